@@ -1,0 +1,1 @@
+"""R2R-CE episodes, embodiment profiles and the built-in hundred."""

@@ -1,0 +1,49 @@
+"""The renderer protocol: textured colour and metric depth for level cameras."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from jaxtyping import Float, Float32, UInt8
+
+from c2nav_engine.geometry import Pinhole
+
+
+@dataclass(frozen=True, slots=True)
+class Image:
+    """One rendered view.
+
+    Attributes:
+        rgb: 8-bit colour at the RGB pinhole's size.
+        depth_m: Metric depth along the optical axis at the depth pinhole's size; 0 where nothing
+            was hit or the hit lies outside the sensor's range.
+        world_from_camera: Where it was taken.
+    """
+
+    rgb: UInt8[np.ndarray, "rows columns 3"]
+    depth_m: Float32[np.ndarray, "depth_rows depth_columns"]
+    world_from_camera: Float[np.ndarray, "4 4"]
+
+
+class Renderer(Protocol):
+    """Anything that turns poses into pictures; the same pose always gives the same bytes."""
+
+    @property
+    def name(self) -> str:
+        """What run records call it."""
+        ...
+
+    def render(
+        self,
+        world_from_cameras: Sequence[Float[np.ndarray, "4 4"]],
+        *,
+        rgb: Pinhole,
+        depth: Pinhole,
+        near_m: float,
+        far_m: float,
+    ) -> list[Image]:
+        """RGB and depth for several cameras in one call."""
+        ...
