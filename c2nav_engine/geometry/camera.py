@@ -49,7 +49,9 @@ class Pinhole:
             row = self.height_px / 2.0 - self.focal_px * points_m[:, 1] / depth_m
         return np.stack([column, row, depth_m], axis=1)
 
-    def unproject(self, pixels_px: Float[np.ndarray, "n 2"], depth_m: Float[np.ndarray, " n"]) -> Float[np.ndarray, "n 3"]:
+    def unproject(
+        self, pixels_px: Float[np.ndarray, "n 2"], depth_m: Float[np.ndarray, " n"]
+    ) -> Float[np.ndarray, "n 3"]:
         """Points in the camera frame at (column, row) pixels and metric depths along the axis."""
         x = (pixels_px[:, 0] - self.width_px / 2.0) / self.focal_px * depth_m
         y = (self.height_px / 2.0 - pixels_px[:, 1]) / self.focal_px * depth_m

@@ -66,7 +66,9 @@ class Pose:
         return wrap_rad(math.atan2(-dx, -dz) - self.yaw_rad)
 
 
-def world_from_camera(pose: Pose, *, height_m: float, offset_rad: float = 0.0) -> Float[np.ndarray, "4 4"]:
+def world_from_camera(
+    pose: Pose, *, height_m: float, offset_rad: float = 0.0
+) -> Float[np.ndarray, "4 4"]:
     """Transform of a level camera at `height_m` above the foot point, turned left by the offset.
 
     The camera frame is the body's: x right, y up, the optical axis along −z.
@@ -75,5 +77,10 @@ def world_from_camera(pose: Pose, *, height_m: float, offset_rad: float = 0.0) -
     sin, cos = math.sin(yaw_rad), math.cos(yaw_rad)
     x, y, z = pose.position_m
     return np.array(
-        [[cos, 0.0, sin, x], [0.0, 1.0, 0.0, y + height_m], [-sin, 0.0, cos, z], [0.0, 0.0, 0.0, 1.0]]
+        [
+            [cos, 0.0, sin, x],
+            [0.0, 1.0, 0.0, y + height_m],
+            [-sin, 0.0, cos, z],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
     )
