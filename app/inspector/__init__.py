@@ -1,0 +1,1 @@
+"""The inspector on viser: the one place that imports it."""

@@ -1,0 +1,1 @@
+"""Run, cases and report pages."""

@@ -1,0 +1,1 @@
+"""Judgements of people: events, store, queues, agreement."""

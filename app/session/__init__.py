@@ -1,0 +1,1 @@
+"""What is open and where one stands: state, commands, the one worker; no viser."""

@@ -1,0 +1,1 @@
+"""The ordinal interface contract: questions, presentations, answers; nonmetric throughout."""

@@ -1,0 +1,1 @@
+"""Variants × episodes × rankers: specs, ledger, executors, observers, statistics, reports."""

@@ -1,0 +1,1 @@
+"""Seeing, Remembering, Arriving: they ask and interpret, and own no motion."""

@@ -1,0 +1,1 @@
+"""Navigation metrics; pure, and closed to the agent."""

@@ -1,0 +1,1 @@
+"""The closed loop as a generator: requests, replies, state, config, variants."""

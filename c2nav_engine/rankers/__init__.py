@@ -1,0 +1,1 @@
+"""Words and pictures in, an outcome out; the only network code."""

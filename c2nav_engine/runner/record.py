@@ -75,7 +75,7 @@ class Footer:
 
     Attributes:
         outcome: How it ended.
-        metrics: Columns of `episodes.csv` that measure (ne_m, os, success, spl, …); missing is None.
+        metrics: Measuring columns of `episodes.csv` (ne_m, os, success, …); missing is None.
         error: The error's text when the outcome is `error`.
     """
 

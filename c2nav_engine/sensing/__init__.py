@@ -1,0 +1,1 @@
+"""Renderers, the sensor ring and its noise."""

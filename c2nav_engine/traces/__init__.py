@@ -1,0 +1,1 @@
+"""MCAP traces: schema, writer, reader, check, recover, exports."""

@@ -1,0 +1,1 @@
+"""Scenes, walkable surfaces, geodesics, kinematics, built-in houses."""

@@ -35,7 +35,7 @@ class Surface(Protocol):
         ...
 
     def snap(self, point_m: Point) -> Point | None:
-        """Nearest point of the surface within (2, 4, 2) m half extents; None where there is none."""
+        """Nearest surface point within (2, 4, 2) m half extents; None where there is none."""
         ...
 
     def geodesic_m(self, start_m: Point, end_m: Point) -> float:
