@@ -12,16 +12,34 @@ from dataclasses import dataclass, field
 
 from c2nav_engine.contract.outcome import Key
 from c2nav_engine.contract.question import Picture, Question, Slot
+from c2nav_engine.controller.sensed import Action, Candidate, DepthStats, Step, View
+from c2nav_engine.faculties.remembering.sketch import SketchEntry
 from c2nav_engine.geometry import Pose
 
-
-class Action(enum.StrEnum):
-    """Low-level actions of VLN-CE."""
-
-    STOP = "STOP"
-    FORWARD = "MOVE_FORWARD"
-    LEFT = "TURN_LEFT"
-    RIGHT = "TURN_RIGHT"
+__all__ = [
+    "Action",
+    "Ask",
+    "Candidate",
+    "DepthStats",
+    "Event",
+    "Facts",
+    "LadderState",
+    "Look",
+    "Marker",
+    "Move",
+    "Moved",
+    "Note",
+    "Record",
+    "Request",
+    "Rig",
+    "Seen",
+    "SketchEntry",
+    "SketchState",
+    "Step",
+    "Stop",
+    "Unasked",
+    "View",
+]
 
 
 class Rig(enum.StrEnum):
@@ -80,38 +98,6 @@ Request = Look | Ask | Move | Note | Stop
 
 
 @dataclass(frozen=True, slots=True)
-class DepthStats:
-    """What the controller keeps of one depth picture.
-
-    Attributes:
-        median_m: Median of the valid depths; 0.0 without any.
-        holes: Fraction of pixels without a return, in [0, 1].
-    """
-
-    median_m: float
-    holes: float
-
-
-@dataclass(frozen=True, slots=True)
-class View:
-    """One camera's reading.
-
-    Attributes:
-        key: "left", "front", "right" or "ring0" … "ring11".
-        offset_rad: Left of the heading at the time.
-        picture: The encoded RGB.
-        free_m: How far a body of this size can travel that way, from recent depth alone.
-        depth: Statistics of its depth picture.
-    """
-
-    key: str
-    offset_rad: float
-    picture: Picture
-    free_m: float
-    depth: DepthStats
-
-
-@dataclass(frozen=True, slots=True)
 class Seen:
     """Answer to `Look`.
 
@@ -130,23 +116,6 @@ class Seen:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
-    """One executed low-level action.
-
-    Attributes:
-        action: What was executed.
-        odometry: Believed pose afterwards.
-        moved_m: Believed horizontal displacement of this step.
-        collided: Whether the move fell short of the intended one by more than 1e-5 m.
-    """
-
-    action: Action
-    odometry: Pose
-    moved_m: float
-    collided: bool
-
-
-@dataclass(frozen=True, slots=True)
 class Moved:
     """Answer to `Move`: what was achieved, possibly fewer steps than asked.
 
@@ -160,27 +129,6 @@ class Moved:
 
 
 # ---------------------------------------------------------------- records
-
-
-@dataclass(frozen=True, slots=True)
-class Candidate:
-    """An alternative as the controller sees it, vetoed ones included.
-
-    Attributes:
-        key: As in the question.
-        feasible: Whether it was offered.
-        veto: Why not ("" when offered), in plain words with numbers: for people, never a model.
-        free_m: Free space that way; None where that means nothing.
-        offset_rad: Direction left of the heading; None where that means nothing.
-        picture: What it shows.
-    """
-
-    key: Key
-    feasible: bool
-    veto: str = ""
-    free_m: float | None = None
-    offset_rad: float | None = None
-    picture: Picture | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,31 +169,6 @@ class Unasked:
 
     facts: Facts
     elected: Key | None
-
-
-@dataclass(frozen=True, slots=True)
-class SketchEntry:
-    """One cycle's entry of the route sketch (paper, eq. 4).
-
-    Attributes:
-        cycle: Navigation cycle.
-        leg: Leg it belongs to.
-        displacement_m: (right, forward) in the leg's start frame.
-        elapsed_steps: Low-level steps of the cycle.
-        turning: "straight", "left", "right", "sharp left", "sharp right", "back".
-        words: Controller-written words of the entry.
-        cue: "current", "next" or "ambiguous".
-        thumbnail: The front view, small.
-    """
-
-    cycle: int
-    leg: int
-    displacement_m: tuple[float, float]
-    elapsed_steps: int
-    turning: str
-    words: str
-    cue: str
-    thumbnail: Picture | None
 
 
 @dataclass(frozen=True, slots=True)
