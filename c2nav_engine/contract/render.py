@@ -15,7 +15,7 @@ from c2nav_engine.contract import wording
 from c2nav_engine.contract.outcome import Key
 from c2nav_engine.contract.presentation import labelled, presentations
 from c2nav_engine.contract.prompt import Part, Prompt
-from c2nav_engine.contract.question import Alternative, Picture, Question
+from c2nav_engine.contract.question import Alternative, Question
 
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 
@@ -64,7 +64,7 @@ def _fillings(question: Question, labels: tuple[tuple[str, Key], ...]) -> dict[s
     by_key = {alternative.key: alternative for alternative in question.alternatives}
     context: list[Part] = []
     for words, picture in question.context:
-        context += ["\n" if context else "", f"{words}\n", picture]
+        context += ["\n" if context else "", f"{wording.context_words(words)}\n", picture]
     alternatives: list[Part] = []
     for label, key in labels:
         alternatives += ["\n" if alternatives else "", *_alternative(label, by_key[key])]
