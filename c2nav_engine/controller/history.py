@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from c2nav_engine.contract.outcome import Key
 from c2nav_engine.controller.config import ControllerConfig
 from c2nav_engine.controller.odometer import planar_m
@@ -77,4 +79,4 @@ class SeeingHistory:
         tail = self.elected[-count:]
         if len(tail) < count or set(tail) != {"left", "right"}:
             return False
-        return all(a != b for a, b in zip(tail, tail[1:], strict=False))
+        return all(a != b for a, b in pairwise(tail))

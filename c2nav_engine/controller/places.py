@@ -68,7 +68,7 @@ class Places:
         self._at(position_m).budget += 1
 
     def mark(self, marker: PlaceMarker) -> bool:
-        """Leave a marker, unless the place's was used or holds a better one; True if it was left."""
+        """Leave a marker unless the place was used or holds a better one; True if it was left."""
         place = self._at(marker.odometry.position_m)
         if place.used or (place.marker is not None and place.marker.score > marker.score):
             return False

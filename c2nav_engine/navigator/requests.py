@@ -10,7 +10,7 @@ import enum
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from c2nav_engine.contract.outcome import Key
+from c2nav_engine.contract.outcome import Answered, Key
 from c2nav_engine.contract.question import Picture, Question, Slot
 from c2nav_engine.controller.sensed import Action, Candidate, DepthStats, Step, View
 from c2nav_engine.faculties.remembering.sketch import SketchEntry
@@ -31,6 +31,7 @@ __all__ = [
     "Note",
     "Record",
     "Request",
+    "Response",
     "Rig",
     "Seen",
     "SketchEntry",
@@ -127,6 +128,9 @@ class Moved:
     steps: tuple[Step, ...]
     exhausted: bool = False
 
+
+Response = Seen | Moved | Answered | None
+"""What the core is sent: for `Look`, `Move`, `Ask`, and `Note` or `Stop`."""
 
 # ---------------------------------------------------------------- records
 
