@@ -13,13 +13,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from c2nav_engine.geometry import Point
 from c2nav_engine.world.walkable_compiled import compiled
-from c2nav_engine.world.walkable_places import Place, places
-from c2nav_engine.world.walkable_spans import NONE, Spans
-from c2nav_engine.world.walkable_walk import walk
+from c2nav_engine.world.walkable_places import places
+from c2nav_engine.world.walkable_spans import NONE, Cells, Place, Spans
+from c2nav_engine.world.walkable_walk import column_of, walk
+
+_Field = tuple[Float[np.ndarray, " n"], Int[np.ndarray, " n"]]
 
 ROOT = -2
 """The parent that stands for the target point itself, which lies anywhere in its cell."""
@@ -28,7 +30,7 @@ _GAIN_M = 1e-7  # improvements below this are rounding
 
 
 @compiled
-def solve_field(spans, target_span, target):
+def solve_field(spans: Spans, target_span: int, target: Cells) -> _Field:
     """Distances of all spans' middles to the target at (x, z) in cells.
 
     Returns:
@@ -61,8 +63,8 @@ def solve_field(spans, target_span, target):
 
 
 @compiled
-def _relax(spans, step, root, field):
-    """Distance of a neighbour through a span's own corner if it sees that, else through the span."""
+def _relax(spans: Spans, step: tuple[int, int], root: Place, field: _Field) -> tuple[float, int]:
+    """A neighbour's distance through a span's own corner if it sees that, else through the span."""
     span, other = step
     distance_m, parent = field
     corner_span, corner, base_m = _corner(spans, parent[span], root, distance_m)
@@ -82,7 +84,9 @@ def _relax(spans, step, root, field):
 
 
 @compiled
-def _corner(spans, parent, root, distance_m):
+def _corner(
+    spans: Spans, parent: int, root: Place, distance_m: Float[np.ndarray, " n"]
+) -> tuple[int, Cells, float]:
     """(span, position, distance to the target) of what a parent stands for."""
     if parent == ROOT:
         return root[0], root[1], 0.0
@@ -90,14 +94,14 @@ def _corner(spans, parent, root, distance_m):
 
 
 @compiled
-def _middle(spans, span):
+def _middle(spans: Spans, span: int) -> Cells:
     """The middle of a span's cell."""
-    column = spans.column[span]
-    return column % spans.columns_x + 0.5, column // spans.columns_x + 0.5
+    x, z = column_of(spans, span)
+    return x + 0.5, z + 0.5
 
 
 @compiled
-def _neighbour(links, span, side):
+def _neighbour(links: Int[np.ndarray, "n 4"], span: int, side: int) -> int:
     """One of eight neighbours: four links, then four diagonals around either side."""
     if side < 4:
         return links[span, side]
@@ -112,7 +116,7 @@ def _neighbour(links, span, side):
 
 
 @compiled
-def read_field(spans, root, field, place):
+def read_field(spans: Spans, root: Place, field: _Field, place: Place) -> tuple[float, int]:
     """Distance of a point anywhere on the surface, and the corner it walks to first.
 
     Args:
@@ -145,7 +149,9 @@ def read_field(spans, root, field, place):
 
 
 @compiled
-def read_many(spans, root, field, places):
+def read_many(
+    spans: Spans, root: Place, field: _Field, places: Float[np.ndarray, "n 3"]
+) -> Float[np.ndarray, " n"]:
     """`read_field` at many places: rows of (span, x, z); inf where the span is `NONE`."""
     distances_m = np.full(places.shape[0], np.inf)
     for i in range(places.shape[0]):
@@ -169,8 +175,8 @@ class BuiltDistanceField:
 
     spans: Spans
     target: Place
-    cell_distance_m: np.ndarray
-    parent: np.ndarray
+    cell_distance_m: Float[np.ndarray, " n"]
+    parent: Int[np.ndarray, " n"]
 
     @staticmethod
     def to(spans: Spans, target: Place) -> BuiltDistanceField:
@@ -201,5 +207,5 @@ class BuiltDistanceField:
         return [*corners, self.target]
 
     @property
-    def _field(self) -> tuple[np.ndarray, np.ndarray]:
+    def _field(self) -> _Field:
         return self.cell_distance_m, self.parent

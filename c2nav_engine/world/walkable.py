@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import OrderedDict
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,7 @@ from c2nav_engine.world.geodesic import BuiltDistanceField
 from c2nav_engine.world.walkable_display import rectangles
 from c2nav_engine.world.walkable_links import linked_spans
 from c2nav_engine.world.walkable_places import (
-    Place,
+    between,
     cell_of,
     nearest_place,
     place,
@@ -24,7 +25,7 @@ from c2nav_engine.world.walkable_places import (
     point_of,
 )
 from c2nav_engine.world.walkable_raster import open_spans
-from c2nav_engine.world.walkable_spans import Spans
+from c2nav_engine.world.walkable_spans import Place, Spans
 from c2nav_engine.world.walkable_walk import CHUNK_M, slide_along, walk
 
 MIN_ISLAND_M2 = 1.0
@@ -142,7 +143,7 @@ class WalkableSurface:
             return None
         places = self._field_to(end).corners(start)
         points = [point_of(self.spans, places[0])]
-        for here, there in zip(places, places[1:], strict=False):
+        for here, there in pairwise(places):
             points += self._profile(here, there)
         return points
 
@@ -160,15 +161,15 @@ class WalkableSurface:
             message = f"expected a move that starts on the floor, came {start_m}; snap it first"
             raise StartError(message)
         span, start = at
-        end = cell_of(self.spans, end_m)[::2]
+        end_x, _, end_z = cell_of(self.spans, end_m)
+        end = (end_x, end_z)
         reached, share, _ = walk(self.spans, span, start, end)
         if share == 1.0:
             return point_of(self.spans, place_within(self.spans, reached, end))
         if sliding:
             rest, x, z = slide_along(self.spans, span, start, end)
             return point_of(self.spans, (rest, (x, z)))
-        x, z = (a + share * (b - a) for a, b in zip(start, end, strict=True))
-        return point_of(self.spans, place_within(self.spans, reached, (x, z)))
+        return point_of(self.spans, place_within(self.spans, reached, between(start, end, share)))
 
     def distance_field(self, target_m: Point) -> BuiltDistanceField:
         """Distances to one target; the same numbers as `geodesic_m` gives.
@@ -221,13 +222,12 @@ class WalkableSurface:
         steps = max(1, int(math.dist(start, there[1]) * self.spans.cell_m / CHUNK_M))
         points = [point_of(self.spans, here)]
         for step in range(1, steps):
-            share = step / steps
-            x, z = (a + share * (b - a) for a, b in zip(start, there[1], strict=True))
-            reached, _, _ = walk(self.spans, span, start, (x, z))
-            points.append(point_of(self.spans, (int(reached), (x, z))))
+            stop = between(start, there[1], step / steps)
+            reached, _, _ = walk(self.spans, span, start, stop)
+            points.append(point_of(self.spans, (int(reached), stop)))
         points.append(point_of(self.spans, there))
-        rises_m = [b[1] - a[1] for a, b in zip(points, points[1:], strict=False)]
-        bends = [abs(b - a) > _BEND_M for a, b in zip(rises_m, rises_m[1:], strict=False)]
+        rises_m = [b[1] - a[1] for a, b in pairwise(points)]
+        bends = [abs(b - a) > _BEND_M for a, b in pairwise(rises_m)]
         return [point for point, bend in zip(points[1:], [*bends, True], strict=True) if bend]
 
     def _connected(self, start: Place, end: Place) -> bool:

@@ -24,7 +24,7 @@ def rectangles(spans: Spans) -> Float[np.ndarray, "n 3 3"]:
 
 
 @compiled
-def _grow(spans):
+def _grow(spans: Spans) -> Float[np.ndarray, "rectangles 5"]:
     """Greedy rectangles, first along x and then along z: rows of (x0, z0, x1, z1, height)."""
     used = np.zeros(spans.column.shape[0], np.bool_)
     found = np.empty((spans.column.shape[0], 5))
@@ -50,9 +50,7 @@ def _grow(spans):
             depth += 1
             for i in range(width):
                 other = spans.links[row[i], 1]
-                if other == NONE or used[other]:
-                    grows = False
-                elif abs(spans.floor_m[other] - height_m) > _LEVEL_M:
+                if other == NONE or used[other] or abs(spans.floor_m[other] - height_m) > _LEVEL_M:
                     grows = False
             for i in range(width if grows else 0):
                 row[i] = spans.links[row[i], 1]

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from jaxtyping import Bool, Int
 
 from c2nav_engine.world.walkable_compiled import compiled
 from c2nav_engine.world.walkable_raster import OpenSpans
 from c2nav_engine.world.walkable_spans import DIRECTIONS_X, DIRECTIONS_Z, NONE, Spans
+
+_Links = Int[np.ndarray, "n 4"]
 
 _EPSILON_M = 1e-4  # float32 heights of a step that is exactly as high as the body climbs
 
@@ -55,19 +58,19 @@ def linked_spans(
     )
 
 
-def _columns(first: np.ndarray) -> np.ndarray:
+def _columns(first: Int[np.ndarray, " c"]) -> Int[np.ndarray, " n"]:
     """The column of each span."""
     return np.repeat(np.arange(first.size - 1, dtype=np.int64), np.diff(first))
 
 
-def _without(links: np.ndarray, keep: np.ndarray) -> np.ndarray:
+def _without(links: _Links, keep: Bool[np.ndarray, " n"]) -> _Links:
     """Links between kept spans only."""
     usable = (links != NONE) & keep[links] & keep[:, None]
     return np.where(usable, links, NONE).astype(np.int32)
 
 
 @compiled
-def _link(spans, column, limits):
+def _link(spans: OpenSpans, column: Int[np.ndarray, " n"], limits: tuple[float, float]) -> _Links:
     """Neighbours that a body can roll to: a step it climbs, and room for its head on both."""
     height_m, climb_m = limits
     count = column.shape[0]
@@ -97,7 +100,9 @@ def _link(spans, column, limits):
 
 
 @compiled
-def _fits(column, links, body):
+def _fits(
+    column: Int[np.ndarray, " n"], links: _Links, body: tuple[int, float]
+) -> Bool[np.ndarray, " n"]:
     """Which spans keep the body's radius, in cells, between their middle and every edge."""
     columns_x, radius = body
     reach = int(np.ceil(radius + 0.5))
@@ -138,7 +143,9 @@ def _fits(column, links, body):
 
 
 @compiled
-def _islands(links, keep):
+def _islands(
+    links: _Links, keep: Bool[np.ndarray, " n"]
+) -> tuple[Int[np.ndarray, " n"], Int[np.ndarray, " islands"]]:
     """Labels of connected parts, by first span, and how many spans each has."""
     count = links.shape[0]
     island = np.full(count, NONE, np.int64)

@@ -6,11 +6,8 @@ import numpy as np
 from jaxtyping import Float
 
 from c2nav_engine.geometry import Point
-from c2nav_engine.world.walkable_spans import NONE, Spans
+from c2nav_engine.world.walkable_spans import NONE, Cells, Place, Spans
 from c2nav_engine.world.walkable_walk import height_at, inside, nearest, places_of
-
-Place = tuple[int, tuple[float, float]]
-"""A span and a position (x, z) in cells inside its cell."""
 
 SNAP_HALF_EXTENTS_M = (2.0, 4.0, 2.0)
 """The search box of Detour's users, half extents along x, y, z."""
@@ -49,7 +46,7 @@ def nearest_place(spans: Spans, point_m: Point) -> Place | None:
     return None if span == NONE else (int(span), (float(x), float(z)))
 
 
-def place_within(spans: Spans, span: int, position: tuple[float, float]) -> Place:
+def place_within(spans: Spans, span: int, position: Cells) -> Place:
     """A position moved inside the cell of a span that it borders on."""
     z, x = divmod(int(spans.column[span]), spans.columns_x)
     return int(span), (float(inside(x, position[0])), float(inside(z, position[1])))
@@ -60,6 +57,11 @@ def point_of(spans: Spans, at: Place) -> Point:
     span, (x, z) = at
     height_m = float(height_at(spans, span, x, z))
     return (spans.origin_x_m + x * spans.cell_m, height_m, spans.origin_z_m + z * spans.cell_m)
+
+
+def between(start: Cells, end: Cells, share: float) -> Cells:
+    """The position at a share of the straight way."""
+    return (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
 
 
 def _half(spans: Spans) -> tuple[float, float]:

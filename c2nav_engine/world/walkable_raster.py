@@ -12,9 +12,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float, Int
 
 from c2nav_engine.errors import SceneError
 from c2nav_engine.world.walkable_compiled import compiled
+
+_Pieces = Float[np.ndarray, "_ 3"]
+_Polygon = Float[np.ndarray, "_ 3"]
 
 _MAX_COLUMNS = 60_000_000
 _CORNERS = 12  # a triangle cut by four lines has at most seven corners
@@ -37,14 +41,14 @@ class OpenSpans(NamedTuple):
     origin_z_m: float
     columns_x: int
     columns_z: int
-    first: np.ndarray
-    floor_m: np.ndarray
-    ceiling_m: np.ndarray
+    first: Int[np.ndarray, " columns+1"]
+    floor_m: Float[np.ndarray, " n"]
+    ceiling_m: Float[np.ndarray, " n"]
 
 
 def open_spans(
-    vertices_m: np.ndarray,
-    triangles: np.ndarray,
+    vertices_m: Float[np.ndarray, "v 3"],
+    triangles: Int[np.ndarray, "t 3"],
     *,
     height_m: float,
     climb_m: float,
@@ -81,7 +85,12 @@ def open_spans(
 
 
 @compiled
-def _rasterize(mesh, columns_x, cursor, pieces):
+def _rasterize(
+    mesh: tuple[Float[np.ndarray, "v 3"], Int[np.ndarray, "t 3"], float, float],
+    columns_x: int,
+    cursor: Int[np.ndarray, " c"],
+    pieces: _Pieces,
+) -> None:
     """Cut triangles along grid lines; count pieces per column, or write them at the cursor.
 
     A piece is (lowest, highest, floor): its height range in the column, and its plane's height
@@ -96,58 +105,75 @@ def _rasterize(mesh, columns_x, cursor, pieces):
     for index in range(triangles.shape[0]):
         for corner in range(3):
             polygon[corner] = cells[triangles[index, corner]]
-        u, v = polygon[1] - polygon[0], polygon[2] - polygon[0]
-        nx = u[1] * v[2] - u[2] * v[1]
-        ny = u[2] * v[0] - u[0] * v[2]
-        nz = u[0] * v[1] - u[1] * v[0]
-        norm = math.sqrt(nx * nx + ny * ny + nz * nz)
-        # Either side of a sheet carries: many meshes wind their floors the wrong way round.
-        stands = norm > 0.0 and abs(ny) >= upright * norm
-        x0, y0, z0 = polygon[0, 0], polygon[0, 1], polygon[0, 2]
+        plane = _plane(polygon, upright)
         corners = 3
-        last_row = int(math.floor(polygon[:3, 2].max()))
-        for z in range(int(math.floor(polygon[:3, 2].min())), last_row + 1):
-            in_row, corners = _split(polygon, corners, (2, z + 1.0), row, rest)
+        first_z, last_z = _range(polygon, corners, 2)
+        for z in range(first_z, last_z + 1):
+            in_row, corners = _split((polygon, corners), (2, z + 1.0), (row, rest))
             polygon, rest = rest, polygon
             if in_row < 3:
                 continue
-            last = int(math.floor(row[:in_row, 0].max()))
-            for x in range(int(math.floor(row[:in_row, 0].min())), last + 1):
-                in_cell, in_row = _split(row, in_row, (0, x + 1.0), cell, rest)
+            first_x, last_x = _range(row, in_row, 0)
+            for x in range(first_x, last_x + 1):
+                in_cell, in_row = _split((row, in_row), (0, x + 1.0), (cell, rest))
                 row, rest = rest, row
                 if in_cell < 3:
                     continue
                 column = z * columns_x + x
                 if pieces.shape[0] > 0:
-                    lowest = cell[:in_cell, 1].min() * cell_m
-                    highest = cell[:in_cell, 1].max() * cell_m
-                    floor = -np.inf
-                    if stands:
-                        middle = y0 - (nx * (x + 0.5 - x0) + nz * (z + 0.5 - z0)) / ny
-                        floor = min(max(middle * cell_m, lowest), highest)
-                    pieces[cursor[column], 0] = lowest
-                    pieces[cursor[column], 1] = highest
-                    pieces[cursor[column], 2] = floor
+                    lowest, highest = cell[:in_cell, 1].min(), cell[:in_cell, 1].max()
+                    middle = plane[0] + plane[1] * (x + 0.5) + plane[2] * (z + 0.5)
+                    if middle > -np.inf:
+                        middle = min(max(middle, lowest), highest)
+                    pieces[cursor[column], 0] = lowest * cell_m
+                    pieces[cursor[column], 1] = highest * cell_m
+                    pieces[cursor[column], 2] = middle * cell_m
                 cursor[column] += 1
 
 
 @compiled
-def _split(polygon, corners, line, below, above):
-    """Cut a convex polygon at coordinate `line = (axis, value)`; the corner counts of both."""
-    axis, value = line
+def _plane(polygon: _Polygon, upright: float) -> tuple[float, float, float]:
+    """Height = a + b·x + c·z of a triangle's plane; a is −inf where it is too steep to carry."""
+    u, v = polygon[1] - polygon[0], polygon[2] - polygon[0]
+    nx = u[1] * v[2] - u[2] * v[1]
+    ny = u[2] * v[0] - u[0] * v[2]
+    nz = u[0] * v[1] - u[1] * v[0]
+    norm = math.sqrt(nx * nx + ny * ny + nz * nz)
+    # Either side of a sheet carries: many meshes wind their floors the wrong way round.
+    if norm == 0.0 or abs(ny) < upright * norm:
+        return -np.inf, 0.0, 0.0
+    b, c = -nx / ny, -nz / ny
+    return polygon[0, 1] - b * polygon[0, 0] - c * polygon[0, 2], b, c
+
+
+@compiled
+def _range(polygon: _Polygon, corners: int, axis: int) -> tuple[int, int]:
+    """First and last cell along an axis that a polygon touches."""
+    values = polygon[:corners, axis]
+    return int(np.floor(values.min())), int(np.floor(values.max()))
+
+
+@compiled
+def _split(
+    polygon: tuple[_Polygon, int], line: tuple[int, float], halves: tuple[_Polygon, _Polygon]
+) -> tuple[int, int]:
+    """Cut a convex polygon at coordinate `line = (axis, value)` into the halves below and above.
+
+    Corners on the line go to both. Returns the corner counts of both halves.
+    """
+    (points, corners), (axis, value), (below, above) = polygon, line, halves
     in_below, in_above = 0, 0
     for i in range(corners):
         j = (i + 1) % corners
-        here, there = value - polygon[i, axis], value - polygon[j, axis]
+        here, there = value - points[i, axis], value - points[j, axis]
         if here >= 0.0:
-            below[in_below] = polygon[i]
+            below[in_below] = points[i]
             in_below += 1
         if here <= 0.0:
-            above[in_above] = polygon[i]
+            above[in_above] = points[i]
             in_above += 1
-        if (here > 0.0 and there < 0.0) or (here < 0.0 and there > 0.0):
-            share = here / (here - there)
-            below[in_below] = polygon[i] + share * (polygon[j] - polygon[i])
+        if here * there < 0.0:
+            below[in_below] = points[i] + here / (here - there) * (points[j] - points[i])
             below[in_below, axis] = value
             above[in_above] = below[in_below]
             in_below += 1
@@ -156,7 +182,9 @@ def _split(polygon, corners, line, below, above):
 
 
 @compiled
-def _open_columns(first, pieces, height_m, climb_m):
+def _open_columns(
+    first: Int[np.ndarray, " c"], pieces: _Pieces, height_m: float, climb_m: float
+) -> tuple[Int[np.ndarray, " c"], Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
     """Merge the pieces of each column into solids and keep the floors with room above."""
     kept = np.zeros_like(first)
     floor_m = np.empty(pieces.shape[0], np.float32)
@@ -186,7 +214,7 @@ def _open_columns(first, pieces, height_m, climb_m):
 
 
 @compiled
-def _solids(pieces, climb_m):
+def _solids(pieces: _Pieces, climb_m: float) -> _Pieces:
     """Pieces of one column merged where they touch: rows of (bottom, top, floor or −inf)."""
     order = np.argsort(pieces[:, 0], kind="mergesort")
     solids = np.empty((pieces.shape[0], 3), pieces.dtype)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float, Int
 
 DIRECTIONS_X = np.array([1, 0, -1, 0])
 DIRECTIONS_Z = np.array([0, 1, 0, -1])
@@ -17,6 +18,12 @@ DIRECTIONS_Z = np.array([0, 1, 0, -1])
 
 NONE = -1
 """No span."""
+
+Cells = tuple[float, float]
+"""A position (x, z) in cells."""
+
+Place = tuple[int, Cells]
+"""A span and a position inside its cell."""
 
 
 class Spans(NamedTuple):
@@ -40,8 +47,8 @@ class Spans(NamedTuple):
     cell_m: float
     columns_x: int
     columns_z: int
-    first: np.ndarray
-    column: np.ndarray
-    floor_m: np.ndarray
-    links: np.ndarray
-    island: np.ndarray
+    first: Int[np.ndarray, " columns+1"]
+    column: Int[np.ndarray, " n"]
+    floor_m: Float[np.ndarray, " n"]
+    links: Int[np.ndarray, "n 4"]
+    island: Int[np.ndarray, " n"]

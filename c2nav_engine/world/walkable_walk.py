@@ -8,9 +8,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from jaxtyping import Float, Int
 
 from c2nav_engine.world.walkable_compiled import compiled
-from c2nav_engine.world.walkable_spans import DIRECTIONS_X, DIRECTIONS_Z, NONE
+from c2nav_engine.world.walkable_spans import DIRECTIONS_X, DIRECTIONS_Z, NONE, Cells, Spans
 
 _TIE = 1e-9
 _INSET = 1e-6
@@ -21,23 +22,31 @@ CHUNK_M = 0.5
 
 
 @compiled
-def walk(spans, span, start, end):
+def column_of(spans: Spans, span: int) -> tuple[int, int]:
+    """The column (x, z) of a span."""
+    return spans.column[span] % spans.columns_x, spans.column[span] // spans.columns_x
+
+
+@compiled
+def walk(spans: Spans, span: int, start: Cells, end: Cells) -> tuple[int, float, float]:
     """Walk straight from `start` on `span` to `end`.
 
     Returns:
         (the span where the walk ends, the share of the way done, the length in metres). The share
-        is 1 when the end is reached, else it lies on the surface's edge.
+        is 1 when the end is reached, else it lies on the surface's edge and the length is inf.
     """
     dx, dz = end[0] - start[0], end[1] - start[1]
-    along = math.sqrt(dx * dx + dz * dz)
-    chunks = max(1, int(along * spans.cell_m / CHUNK_M))
-    chunk_m = along * spans.cell_m / chunks
+    along_m = math.sqrt(dx * dx + dz * dz) * spans.cell_m
+    chunks = max(1, int(along_m / CHUNK_M))
+    chunk_m = along_m / chunks
     done, length_m, height_m = 0, 0.0, spans.floor_m[span]
-    x, z = spans.column[span] % spans.columns_x, spans.column[span] // spans.columns_x
     side_x, side_z = (0 if dx > 0.0 else 2), (1 if dz > 0.0 else 3)
+    x, z = column_of(spans, span)
+    # Grid lines ahead, as offsets from the start; shares of the way where they are crossed.
+    ahead_x, ahead_z = x + (dx > 0.0) - start[0], z + (dz > 0.0) - start[1]
     while True:
-        next_x = (x + (1 if dx > 0.0 else 0) - start[0]) / dx if dx != 0.0 else np.inf
-        next_z = (z + (1 if dz > 0.0 else 0) - start[1]) / dz if dz != 0.0 else np.inf
+        next_x = ahead_x / dx if dx != 0.0 else np.inf
+        next_z = ahead_z / dz if dz != 0.0 else np.inf
         share = min(next_x, next_z)
         while done + 1 < min(chunks, share * chunks):
             rise_m = spans.floor_m[span] - height_m
@@ -49,23 +58,21 @@ def walk(spans, span, start, end):
         if abs(next_x - next_z) <= _TIE:
             # Exactly through a corner: either way round it will do.
             other = _diagonal(spans.links, span, side_x, side_z)
-            x += DIRECTIONS_X[side_x]
-            z += DIRECTIONS_Z[side_z]
-        elif next_x < next_z:
-            other = spans.links[span, side_x]
-            x += DIRECTIONS_X[side_x]
         else:
-            other = spans.links[span, side_z]
-            z += DIRECTIONS_Z[side_z]
+            other = spans.links[span, side_x if next_x < next_z else side_z]
         if other == NONE:
             return span, max(share, 0.0), np.inf
+        if next_x <= share + _TIE:
+            ahead_x += DIRECTIONS_X[side_x]
+        if next_z <= share + _TIE:
+            ahead_z += DIRECTIONS_Z[side_z]
         span = other
     rise_m = spans.floor_m[span] - height_m
     return span, 1.0, length_m + math.sqrt(chunk_m * chunk_m + rise_m * rise_m)
 
 
 @compiled
-def _diagonal(links, span, side_x, side_z):
+def _diagonal(links: Int[np.ndarray, "n 4"], span: int, side_x: int, side_z: int) -> int:
     """The diagonal neighbour, around either side of the corner between."""
     beside = links[span, side_x]
     if beside != NONE and links[beside, side_z] != NONE:
@@ -77,10 +84,10 @@ def _diagonal(links, span, side_x, side_z):
 
 
 @compiled
-def height_at(spans, span, x, z):
+def height_at(spans: Spans, span: int, x: float, z: float) -> float:
     """Floor height at (x, z), interpolated between the middles of the cells that are linked."""
-    east = x - spans.column[span] % spans.columns_x - 0.5
-    south = z - spans.column[span] // spans.columns_x - 0.5
+    column_x, column_z = column_of(spans, span)
+    east, south = x - column_x - 0.5, z - column_z - 0.5
     side_x, side_z = (0 if east > 0.0 else 2), (1 if south > 0.0 else 3)
     share_x, share_z = min(abs(east), 0.5), min(abs(south), 0.5)
     here_m = spans.floor_m[span]
@@ -95,13 +102,15 @@ def height_at(spans, span, x, z):
 
 
 @compiled
-def inside(column, value):
+def inside(column: int, value: float) -> float:
     """A coordinate moved into its cell, off the border."""
     return min(max(value, column + _INSET), column + 1.0 - _INSET)
 
 
 @compiled
-def nearest(spans, point, half):
+def nearest(
+    spans: Spans, point: tuple[float, float, float], half: tuple[float, float]
+) -> tuple[int, float, float]:
     """The surface point nearest to `point` (x in cells, height in metres, z in cells).
 
     Args:
@@ -133,7 +142,7 @@ def nearest(spans, point, half):
 
 
 @compiled
-def span_at(spans, point, tolerance_m):
+def span_at(spans: Spans, point: tuple[float, float, float], tolerance_m: float) -> int:
     """The span under `point` whose floor is nearest in height, within the tolerance, or `NONE`."""
     x, height_m, z = point
     if not (0.0 <= x < spans.columns_x and 0.0 <= z < spans.columns_z):
@@ -148,7 +157,9 @@ def span_at(spans, point, tolerance_m):
 
 
 @compiled
-def places_of(spans, points, limits):
+def places_of(
+    spans: Spans, points: Float[np.ndarray, "n 3"], limits: tuple[float, tuple[float, float]]
+) -> Float[np.ndarray, "n 3"]:
     """Where points stand: on the floor under them, else on the nearest in the search box.
 
     Args:
@@ -171,7 +182,7 @@ def places_of(spans, points, limits):
 
 
 @compiled
-def slide_along(spans, span, start, end):
+def slide_along(spans: Spans, span: int, start: Cells, end: Cells) -> tuple[int, float, float]:
     """Where a move from `start` towards an `end` that a straight walk cannot reach comes to rest.
 
     The nearest point to the end that is connected to the start inside the circle around both, as
@@ -191,8 +202,8 @@ def slide_along(spans, span, start, end):
     while taken < filled:
         here = queue[taken]
         taken += 1
-        x = inside(spans.column[here] % spans.columns_x, end[0])
-        z = inside(spans.column[here] // spans.columns_x, end[1])
+        column_x, column_z = column_of(spans, here)
+        x, z = inside(column_x, end[0]), inside(column_z, end[1])
         gap = (x - end[0]) ** 2 + (z - end[1]) ** 2
         if gap < smallest:
             best, best_x, best_z, smallest = here, x, z, gap
@@ -200,8 +211,9 @@ def slide_along(spans, span, start, end):
             other = spans.links[here, side]
             if other == NONE or seen[other] or filled == queue.shape[0]:
                 continue
-            near_x = inside(spans.column[other] % spans.columns_x, middle_x) - middle_x
-            near_z = inside(spans.column[other] // spans.columns_x, middle_z) - middle_z
+            column_x, column_z = column_of(spans, other)
+            near_x = inside(column_x, middle_x) - middle_x
+            near_z = inside(column_z, middle_z) - middle_z
             if near_x * near_x + near_z * near_z <= radius * radius:
                 seen[other] = True
                 queue[filled] = other
