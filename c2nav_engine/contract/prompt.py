@@ -48,6 +48,9 @@ class Reply:
         tokens_out: Completion tokens where known.
         cost_usd: Price where known.
         model: Model id as served, where known.
+        cached: Whether the answer came from the answer cache.
+        retry_after_s: For a transport failure: how long the other side asks to be left alone;
+            None when asking again cannot help.
     """
 
     outcome: Answered | None = None
@@ -58,6 +61,7 @@ class Reply:
     cost_usd: float | None = None
     model: str = ""
     cached: bool = False
+    retry_after_s: float | None = 0.0
 
 
 @dataclass(frozen=True, slots=True)

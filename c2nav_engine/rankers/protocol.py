@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Sequence
+from typing import Protocol, runtime_checkable
 
 from c2nav_engine.contract.prompt import Prompt, Ranked, Reply
 from c2nav_engine.contract.question import Question
@@ -23,6 +24,24 @@ class Adapter(Protocol):
 
     def answer(self, prompt: Prompt) -> Reply:
         """One query; raises `RankerStopped` or `RankerUnavailable`, never for a bad answer."""
+        ...
+
+
+@runtime_checkable
+class BatchAdapter(Protocol):
+    """An adapter that answers several prompts at less cost than one by one."""
+
+    def answer_all(self, prompts: Sequence[Prompt]) -> list[Reply]:
+        """One reply per prompt, in order."""
+        ...
+
+
+@runtime_checkable
+class Closable(Protocol):
+    """An adapter that holds connections or a model."""
+
+    def close(self) -> None:
+        """Release them."""
         ...
 
 

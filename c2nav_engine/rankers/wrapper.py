@@ -1,0 +1,158 @@
+"""The one wrapper around every adapter: it owns the protocol, adapters only carry questions.
+
+Order of events for one question: every presentation goes out; failures of the transport are
+tried again; answers that cannot be read get one repair attempt with the format reminder; then the
+outcomes are aggregated. The full record of all queries goes back with the outcome.
+"""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from threading import BoundedSemaphore
+
+from c2nav_engine.contract.aggregate import aggregate
+from c2nav_engine.contract.outcome import (
+    Answered,
+    Empty,
+    Invalid,
+    Refused,
+    TransportFailure,
+    Truncated,
+)
+from c2nav_engine.contract.presentation import presentations
+from c2nav_engine.contract.prompt import Prompt, Query, Ranked, Reply
+from c2nav_engine.contract.question import Question
+from c2nav_engine.contract.render import render
+from c2nav_engine.errors import RankerUnavailable
+from c2nav_engine.rankers.accounting import AskingConfig, Spent
+from c2nav_engine.rankers.protocol import Adapter, BatchAdapter, Closable
+from c2nav_engine.rankers.reading import read
+
+REPAIRABLE = (Invalid, Empty, Truncated, Refused)
+"""Answers that a format reminder may mend. A tie or an abstention is well formed: pressing for a
+winner would turn doubt into a choice."""
+
+
+class AskingRanker:
+    """A `Ranker` out of an adapter; one instance serves any number of threads.
+
+    Args:
+        adapter: What answers single prompts.
+        config: Retries, budget, concurrency.
+        clock: Monotonic seconds, for latencies alone.
+        sleep: Waits between retries.
+        privileged: Whether the adapter knows the truth (simulated observers).
+    """
+
+    def __init__(
+        self,
+        adapter: Adapter,
+        config: AskingConfig | None = None,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
+        privileged: bool = False,
+    ) -> None:
+        self._adapter = adapter
+        self._config = config or AskingConfig()
+        self._clock = clock
+        self._sleep = sleep
+        self._privileged = privileged
+        self._under_way = BoundedSemaphore(self._config.concurrency)
+        self.spent = Spent()
+
+    @property
+    def name(self) -> str:
+        """The adapter's name, with the model id where there is one."""
+        return self._adapter.name
+
+    def rank(self, question: Question) -> Ranked:
+        """Ask in every order the question wants, parse, repair once, aggregate.
+
+        Raises:
+            RankerStopped: No further query makes sense, or the budget is used up.
+            RankerUnavailable: A transport failure outlived its retries.
+        """
+        shown = presentations(question, once=self._adapter.asks_once)
+        asked = [render(question, order) for order in range(len(shown))]
+        queries: list[Query] = []
+        final: dict[int, Answered] = {}
+        while asked:
+            finished = self._ask_until_answered(asked, queries)
+            final.update({query.prompt.order: query.outcome for query in finished})
+            asked = [
+                render(question, query.prompt.order, repair=query.prompt.repair + 1)
+                for query in finished
+                if isinstance(query.outcome, REPAIRABLE)
+                and query.prompt.repair < self._config.repairs
+            ]
+        outcome = aggregate(question, list(final.values()))
+        return Ranked(outcome, tuple(queries), self.name, self._privileged)
+
+    def close(self) -> None:
+        """Release what the adapter holds, if it holds anything."""
+        if isinstance(self._adapter, Closable):
+            self._adapter.close()
+
+    def _ask_until_answered(self, prompts: list[Prompt], queries: list[Query]) -> list[Query]:
+        """One finished query per prompt; every try is appended to `queries`."""
+        finished: list[Query] = []
+        for attempt in itertools.count():
+            tried = [
+                Query(prompt, reply, read(prompt, reply))
+                for prompt, reply in zip(prompts, self._send(prompts), strict=True)
+            ]
+            queries += tried
+            failed = [query for query in tried if isinstance(query.outcome, TransportFailure)]
+            finished += [query for query in tried if query not in failed]
+            if not failed:
+                break
+            self._sleep(max(self._pause_s(query, attempt) for query in failed))
+            prompts = [query.prompt for query in failed]
+        return finished
+
+    def _pause_s(self, failed: Query, attempt: int) -> float:
+        """How long to wait before the next try; raises `RankerUnavailable` when there is none."""
+        wanted_s = failed.reply.retry_after_s
+        hopeless = wanted_s is None or wanted_s > self._config.longest_pause_s
+        if hopeless or attempt >= self._config.retries:
+            raise self._unavailable(failed)
+        return max(self._config.backoff_s * 2**attempt, wanted_s or 0.0)
+
+    def _unavailable(self, failed: Query) -> RankerUnavailable:
+        slot = failed.prompt.question.slot.value
+        reason = getattr(failed.outcome, "reason", "")
+        return RankerUnavailable(
+            f"expected {self.name} to answer a {slot} question, came: {reason}. "
+            "Check the server, then resume the run"
+        )
+
+    def _send(self, prompts: Sequence[Prompt]) -> list[Reply]:
+        self.spent.check(self._config, more=len(prompts))
+        if isinstance(self._adapter, BatchAdapter):
+            replies = self._batch(self._adapter, prompts)
+        elif len(prompts) == 1 or self._config.concurrency == 1:
+            replies = [self._one(prompt) for prompt in prompts]
+        else:
+            with ThreadPoolExecutor(len(prompts)) as pool:
+                replies = list(pool.map(self._one, prompts))
+        for reply in replies:
+            self.spent.add(reply)
+        return replies
+
+    def _one(self, prompt: Prompt) -> Reply:
+        return self._timed(lambda: [self._adapter.answer(prompt)])[0]
+
+    def _batch(self, adapter: BatchAdapter, prompts: Sequence[Prompt]) -> list[Reply]:
+        return self._timed(lambda: adapter.answer_all(prompts))
+
+    def _timed(self, ask: Callable[[], list[Reply]]) -> list[Reply]:
+        with self._under_way:
+            start_s = self._clock()
+            replies = ask()
+            share_s = (self._clock() - start_s) / max(1, len(replies))
+        return [replace(reply, latency_s=reply.latency_s or share_s) for reply in replies]
