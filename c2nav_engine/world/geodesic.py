@@ -43,44 +43,37 @@ def solve_field(spans: Spans, target_span: int, target: Cells) -> _Field:
     middle = _middle(spans, target_span)
     _, _, distance_m[target_span] = walk(spans, target_span, target, middle)
     parent[target_span] = ROOT
+    unseen = np.full(count, NONE, np.int64)  # the corner that a span was last found not to see
     heap = [(distance_m[target_span], target_span)]
     while heap:
         reached_m, span = heapq.heappop(heap)
         if reached_m > distance_m[span]:
             continue
+        hung = parent[span]
+        corner_span, corner, corner_m = _corner(spans, hung, (target_span, target), distance_m)
         for side in range(8):
             other = _neighbour(spans.links, span, side)
-            if other == NONE:
+            if other == NONE or parent[other] == hung:
                 continue
-            length_m, hung = _relax(
-                spans, (span, other), (target_span, target), (distance_m, parent)
-            )
+            middle = _middle(spans, other)
+            least_m = corner_m + _flat_m(spans, corner, middle)
+            if least_m >= distance_m[other] - _GAIN_M:
+                continue
+            length_m, by = np.inf, hung
+            if unseen[other] != hung:
+                reached, _, length_m = walk(spans, corner_span, corner, middle)
+                length_m = corner_m + (length_m if reached == other else np.inf)
+            if length_m == np.inf:
+                unseen[other] = hung
+                rise_m = spans.floor_m[other] - spans.floor_m[span]
+                flat_m = _flat_m(spans, _middle(spans, span), middle)
+                length_m = reached_m + math.sqrt(flat_m * flat_m + rise_m * rise_m)
+                by = span
             if length_m < distance_m[other] - _GAIN_M:
                 distance_m[other] = length_m
-                parent[other] = hung
+                parent[other] = by
                 heapq.heappush(heap, (length_m, other))
     return distance_m, parent
-
-
-@compiled
-def _relax(spans: Spans, step: tuple[int, int], root: Place, field: _Field) -> tuple[float, int]:
-    """A neighbour's distance through a span's own corner if it sees that, else through the span."""
-    span, other = step
-    distance_m, parent = field
-    corner_span, corner, base_m = _corner(spans, parent[span], root, distance_m)
-    end = _middle(spans, other)
-    gap = math.sqrt((end[0] - corner[0]) ** 2 + (end[1] - corner[1]) ** 2) * spans.cell_m
-    best_m, hung = np.inf, NONE
-    if base_m + gap < distance_m[other] - _GAIN_M:
-        reached, _, length_m = walk(spans, corner_span, corner, end)
-        if reached == other and length_m < np.inf:
-            best_m, hung = base_m + length_m, parent[span]
-    if hung == NONE:
-        start = _middle(spans, span)
-        flat = math.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2) * spans.cell_m
-        rise_m = spans.floor_m[other] - spans.floor_m[span]
-        best_m, hung = distance_m[span] + math.sqrt(flat * flat + rise_m * rise_m), span
-    return best_m, hung
 
 
 @compiled
@@ -91,6 +84,12 @@ def _corner(
     if parent == ROOT:
         return root[0], root[1], 0.0
     return parent, _middle(spans, parent), distance_m[parent]
+
+
+@compiled
+def _flat_m(spans: Spans, start: Cells, end: Cells) -> float:
+    """Straight distance in plan, in metres."""
+    return math.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2) * spans.cell_m
 
 
 @compiled
