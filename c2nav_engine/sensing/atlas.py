@@ -5,65 +5,98 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float32, Int32, Int64, UInt8
+from jaxtyping import Float32, Int32, Int64, UInt8, UInt32
 
-from c2nav_engine.world.scene import Scene
+from c2nav_engine.sensing.mipmap import LEVELS, densities, mipmaps
+from c2nav_engine.world.scene import Material, Scene
 
 
 class Atlas(NamedTuple):
     """Textures end to end, with tables by material and by triangle.
 
-    A named tuple, because compiled kernels take it as it is.
+    A named tuple, because compiled kernels take it as it is. Texels and vertex colours are
+    packed into one integer each, red in the lowest byte, alpha in the highest.
 
     Attributes:
-        texels: Colours in sRGB with alpha of all textures, each row by row from its top.
-        offsets: First texel of each material's texture.
-        sizes_px: (rows, columns) of each material's texture; zeros where it has none.
+        texels: All textures with their smaller copies, each row by row from its top.
+        offsets: First texel of each level of each material's texture.
+        sizes_px: (rows, columns) of each level; zeros where a material has no texture.
         colours: Linear colour factor of each material, with alpha.
         unlit: 1 where a material is not shaded.
         cutout_alphas: Alpha below which a material's surface is not there.
         material_of_triangle: Index into these tables.
         uvs: Texture coordinates of the corners; no rows where the scene has none.
+        texel_density: Squared texels a metre of each triangle; no rows without textures.
         triangles: Vertex indices; needed for vertex colours only.
-        vertex_colours: Colours in sRGB with alpha; no rows where the scene has none.
+        vertex_colours: Packed; empty where the scene has none.
     """
 
-    texels: UInt8[np.ndarray, "texels 4"]
-    offsets: Int64[np.ndarray, " materials"]
-    sizes_px: Int32[np.ndarray, "materials 2"]
+    texels: UInt32[np.ndarray, " texels"]
+    offsets: Int64[np.ndarray, "materials levels"]
+    sizes_px: Int32[np.ndarray, "materials levels 2"]
     colours: Float32[np.ndarray, "materials 4"]
     unlit: UInt8[np.ndarray, " materials"]
     cutout_alphas: Float32[np.ndarray, " materials"]
     material_of_triangle: Int32[np.ndarray, " triangles"]
     uvs: Float32[np.ndarray, "cornered 3 2"]
+    texel_density: Float32[np.ndarray, " cornered"]
     triangles: Int32[np.ndarray, "triangles 3"]
-    vertex_colours: UInt8[np.ndarray, "coloured 4"]
+    vertex_colours: UInt32[np.ndarray, " coloured"]
 
 
 def atlas_of(scene: Scene) -> Atlas:
     """Pack a scene; textures that materials share are stored once."""
-    textures = {
-        id(material.texture): material.texture
-        for material in scene.materials
-        if material.texture is not None
-    }
-    starts = np.cumsum([0, *(texture.size // 4 for texture in textures.values())])
-    offset_of = dict(zip(textures, starts.tolist(), strict=False))
-    flat = [texture.reshape(-1, 4) for texture in textures.values()]
-    sizes = [part.stop - part.first for part in scene.parts]
-    materials = np.asarray([part.material for part in scene.parts], np.int32)
+    texels, offsets, sizes_px = _packed(scene.materials)
+    material_of_triangle = np.repeat(
+        np.asarray([part.material for part in scene.parts], np.int32),
+        [part.stop - part.first for part in scene.parts],
+    )
+    uvs = np.zeros((0, 3, 2), np.float32) if scene.uvs is None else scene.uvs
     return Atlas(
-        texels=np.concatenate(flat) if flat else np.zeros((1, 4), np.uint8),
-        offsets=np.asarray([offset_of.get(id(m.texture), 0) for m in scene.materials], np.int64),
-        sizes_px=np.asarray(
-            [(0, 0) if m.texture is None else m.texture.shape[:2] for m in scene.materials],
-            np.int32,
-        ),
+        texels=texels,
+        offsets=offsets,
+        sizes_px=sizes_px,
         colours=np.asarray([m.colour for m in scene.materials], np.float32),
         unlit=np.asarray([m.unlit for m in scene.materials], np.uint8),
         cutout_alphas=np.asarray([m.cutout_alpha for m in scene.materials], np.float32),
-        material_of_triangle=np.repeat(materials, sizes),
-        uvs=np.zeros((0, 3, 2), np.float32) if scene.uvs is None else scene.uvs,
+        material_of_triangle=material_of_triangle,
+        uvs=uvs,
+        texel_density=densities(
+            scene.vertices_m, scene.triangles, uvs, sizes_px[material_of_triangle, 0]
+        )
+        if len(uvs)
+        else np.zeros(0, np.float32),
         triangles=scene.triangles,
-        vertex_colours=np.zeros((0, 4), np.uint8) if scene.colours is None else scene.colours,
+        vertex_colours=np.zeros(0, np.uint32) if scene.colours is None else packed(scene.colours),
     )
+
+
+def packed(rgba: UInt8[np.ndarray, "*shape 4"]) -> UInt32[np.ndarray, "*shape"]:
+    """Four bytes as one integer, red lowest."""
+    return np.ascontiguousarray(rgba).view("<u4").astype(np.uint32, copy=False)[..., 0]
+
+
+def _packed(
+    materials: tuple[Material, ...],
+) -> tuple[
+    UInt32[np.ndarray, " texels"],
+    Int64[np.ndarray, "materials levels"],
+    Int32[np.ndarray, "materials levels 2"],
+]:
+    chunks: list[UInt32[np.ndarray, " texels"]] = []
+    row_of: dict[int, int] = {}
+    offsets = np.zeros((len(materials), LEVELS), np.int64)
+    sizes_px = np.zeros((len(materials), LEVELS, 2), np.int32)
+    start = 0
+    for index, material in enumerate(materials):
+        if material.texture is None:
+            continue
+        known = row_of.setdefault(id(material.texture), index)
+        if known != index:
+            offsets[index], sizes_px[index] = offsets[known], sizes_px[known]
+            continue
+        for level, picture in enumerate(mipmaps(packed(material.texture))):
+            offsets[index, level], sizes_px[index, level] = start, picture.shape
+            chunks.append(picture.reshape(-1))
+            start += picture.size
+    return np.concatenate(chunks) if chunks else np.zeros(1, np.uint32), offsets, sizes_px

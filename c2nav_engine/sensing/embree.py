@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Float32, UInt8
+from jaxtyping import Bool, Float, Float32, Int64, UInt8
 
 from c2nav_engine.geometry import Pinhole
 from c2nav_engine.sensing.atlas import atlas_of
@@ -21,6 +21,10 @@ from c2nav_engine.world.scene import Scene
 
 CHUNK_RAYS = 16_384
 """Rays that one thread shades at a time."""
+
+
+SEE_THROUGH_LAYERS = 8
+"""Cut-out surfaces that a ray passes before the next one counts as there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +38,8 @@ class Light:
         background: Colour in sRGB where nothing is hit.
     """
 
-    ambient: float = 0.4
-    headlight: float = 0.35
+    ambient: float = 0.3
+    headlight: float = 0.45
     sky: float = 0.25
     background: tuple[int, int, int] = (200, 210, 220)
 
@@ -59,10 +63,10 @@ class EmbreeRenderer:
         light = light or Light()
         self._kernels = shading
         self._lighting = shading.Lighting(
-            np.asarray([light.ambient, light.headlight, light.sky], np.float32),
-            np.asarray(light.background, np.uint8),
+            light.ambient, light.headlight, light.sky, *light.background
         )
         self._atlas = atlas_of(scene)
+        self._has_cutouts = bool(self._atlas.cutout_alphas.any())
         self._caster = Caster(scene, threads=threads)
         self._pool = ThreadPoolExecutor(threads or os.cpu_count() or 1, "render")
         self._directions: dict[Pinhole, Float32[np.ndarray, "rays 3"]] = {}
@@ -86,14 +90,14 @@ class EmbreeRenderer:
         if not count:
             return []
         pinholes = [rgb] if rgb == depth else [rgb, depth]
-        hits = self._caster.cast(self.rays(world_from_cameras, pinholes))
-        pictures = self._shaded(hits, count * rgb.width_px * rgb.height_px)
+        hits = self._cast(self.rays(world_from_cameras, pinholes))
+        pictures = self._shaded(hits, rgb, count)
         t_hit = hits.t_hit[-count * depth.width_px * depth.height_px :]
         depths_m = np.where((t_hit >= near_m) & (t_hit <= far_m), t_hit, np.float32(0.0))
         return [
             Image(rgb=picture, depth_m=depth_m, world_from_camera=np.asarray(matrix, np.float64))
             for picture, depth_m, matrix in zip(
-                pictures.reshape(count, rgb.height_px, rgb.width_px, 3),
+                pictures,
                 depths_m.reshape(count, depth.height_px, depth.width_px),
                 world_from_cameras,
                 strict=True,
@@ -123,7 +127,7 @@ class EmbreeRenderer:
         self, origins_m: Float[np.ndarray, "rays 3"], directions: Float[np.ndarray, "rays 3"]
     ) -> Hits:
         """First hits of any rays in the world frame, in lengths of their directions."""
-        return self._caster.cast(np.hstack([origins_m, directions]).astype(np.float32))
+        return self._cast(np.hstack([origins_m, directions]).astype(np.float32))
 
     def segment_clear(
         self,
@@ -147,16 +151,44 @@ class EmbreeRenderer:
             self._directions[pinhole] = np.ascontiguousarray(directions, np.float32)
         return self._directions[pinhole]
 
-    def _shaded(self, hits: Hits, count: int) -> UInt8[np.ndarray, "pixels 3"]:
-        """Colours of the first `count` hits."""
-        rgb = np.empty((count, 3), np.uint8)
+    def _cast(self, rays: Float32[np.ndarray, "rays 6"]) -> Hits:
+        """First hits; rays go on behind surfaces that alpha says are not there."""
+        hits = self._caster.cast(rays)
+        if not self._has_cutouts:
+            return hits
+        through = np.empty(len(rays), np.bool_)
+        for _ in range(SEE_THROUGH_LAYERS):
+            if not self._kernels.find_cutouts(through, hits, self._atlas):
+                break
+            self._go_on(hits, np.flatnonzero(through))
+        return hits
+
+    def _go_on(self, hits: Hits, indices: Int64[np.ndarray, " passing"]) -> None:
+        """Replace hits by the next ones along the same rays."""
+        rays = hits.rays[indices]
+        # Just behind the surface, in lengths of the ray: far enough for 32-bit coordinates.
+        passed = hits.t_hit[indices] * np.float32(1.0 + 1e-5) + np.float32(1e-4)
+        rays[:, :3] += rays[:, 3:] * passed[:, None]
+        beyond = self._caster.cast(rays)
+        hits.t_hit[indices] = beyond.t_hit + passed
+        hits.triangles[indices] = beyond.triangles
+        hits.barycentrics[indices] = beyond.barycentrics
+        hits.normals[indices] = beyond.normals
+
+    def _shaded(
+        self, hits: Hits, pinhole: Pinhole, views: int
+    ) -> UInt8[np.ndarray, "views rows columns 3"]:
+        """Pictures of the first hits, which are those of `views` cameras of one pinhole."""
+        rgb = np.empty((views, pinhole.height_px, pinhole.width_px, 3), np.uint8)
+        pixels = rgb.reshape(-1, 3)
+        look = (self._lighting, pinhole.focal_px**-2)
 
         def shade_chunk(start: int) -> None:
-            chunk = slice(start, min(start + CHUNK_RAYS, count))
+            chunk = slice(start, min(start + CHUNK_RAYS, len(pixels)))
             part = Hits(*(array[chunk] for array in hits))
-            self._kernels.shade(rgb[chunk], part, self._atlas, self._lighting)
+            self._kernels.shade(pixels[chunk], part, self._atlas, look)
 
-        self._each(shade_chunk, range(0, count, CHUNK_RAYS))
+        self._each(shade_chunk, range(0, len(pixels), CHUNK_RAYS))
         return rgb
 
     def _each(self, work: Callable[[int], None], items: Sequence[int]) -> None:

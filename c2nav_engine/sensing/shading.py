@@ -1,42 +1,36 @@
 """Compiled kernels: camera rays out, colours of hits in, one pass each.
 
-Importing this module imports numba; the renderer does so only when it is built.
+Importing this module imports numba; the renderer does so only when it is built. Kernels index
+single elements throughout: a view of a row would count references across threads.
 """
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float32, UInt8
+from jaxtyping import Bool, Float32, UInt8
 
 from c2nav_engine.sensing.atlas import Atlas
 from c2nav_engine.sensing.caster import Hits
+from c2nav_engine.sensing.colour import alpha_of, decode_channel, encode_level
+from c2nav_engine.sensing.mipmap import LEVELS
 from c2nav_engine.world.compiled import compiled
 
-_LEVELS = np.arange(256) / 255.0
-DECODED = np.where(_LEVELS <= 0.04045, _LEVELS / 12.92, ((_LEVELS + 0.055) / 1.055) ** 2.4).astype(
-    np.float32
-)
-"""Linear value of each 8-bit sRGB level."""
-
-_STEPS = np.arange(4097) / 4096.0
-ENCODED = np.rint(
-    255.0 * np.where(_STEPS <= 0.0031308, 12.92 * _STEPS, 1.055 * _STEPS ** (1.0 / 2.4) - 0.055)
-).astype(np.uint8)
-"""8-bit sRGB level of a linear value in steps of 1/4096, fine enough for the darkest levels."""
+LEAST_FACING = 0.05
+"""Grazing surfaces are filtered as if seen at this cosine, so that they do not blur away."""
 
 
 class Lighting(NamedTuple):
-    """Light as kernels take it.
+    """Light as kernels take it: shares of ambient light, headlight and sky; the background."""
 
-    Attributes:
-        lights: Shares of ambient light, headlight and sky.
-        background: Colour in sRGB where nothing is hit.
-    """
-
-    lights: Float32[np.ndarray, " 3"]
-    background: UInt8[np.ndarray, " 3"]
+    ambient: float
+    headlight: float
+    sky: float
+    red: int
+    green: int
+    blue: int
 
 
 @compiled
@@ -49,109 +43,152 @@ def fill_rays(
     m = world_from_camera
     for i in range(len(directions)):
         x, y, z = directions[i, 0], directions[i, 1], directions[i, 2]
-        rays[i, 0] = m[0, 3]
-        rays[i, 1] = m[1, 3]
-        rays[i, 2] = m[2, 3]
-        rays[i, 3] = m[0, 0] * x + m[0, 1] * y + m[0, 2] * z
-        rays[i, 4] = m[1, 0] * x + m[1, 1] * y + m[1, 2] * z
-        rays[i, 5] = m[2, 0] * x + m[2, 1] * y + m[2, 2] * z
+        for k in range(3):
+            rays[i, k] = m[k, 3]
+            rays[i, 3 + k] = m[k, 0] * x + m[k, 1] * y + m[k, 2] * z
 
 
 @compiled
-def encode_level(linear: float) -> int:
-    """The 8-bit sRGB level of a linear value, clipped."""
-    return ENCODED[int(min(max(linear, 0.0), 1.0) * 4096.0 + 0.5)]
+def facing(hits: Hits, i: int) -> tuple[float, float, float]:
+    """Of hit i: cosine to the viewer, upward part of the seen side's normal, length of the ray."""
+    dx, dy, dz = hits.rays[i, 3], hits.rays[i, 4], hits.rays[i, 5]
+    nx, ny, nz = hits.normals[i, 0], hits.normals[i, 1], hits.normals[i, 2]
+    length = math.sqrt(dx * dx + dy * dy + dz * dz)
+    scale = math.sqrt(nx * nx + ny * ny + nz * nz)
+    if length * scale <= 0.0:
+        return 0.0, 0.0, length
+    cosine = -(dx * nx + dy * ny + dz * nz) / (length * scale)
+    up = ny / scale
+    return (cosine, up, length) if cosine >= 0.0 else (-cosine, -up, length)
 
 
 @compiled
-def brightness(
-    direction: Float32[np.ndarray, " 3"],
-    normal: Float32[np.ndarray, " 3"],
-    lights: Float32[np.ndarray, " 3"],
-) -> float:
-    """Lambert's law for (ambient, headlight, sky), on the side of the surface that is seen."""
-    dx, dy, dz = direction[0], direction[1], direction[2]
-    nx, ny, nz = normal[0], normal[1], normal[2]
-    scale = (dx * dx + dy * dy + dz * dz) * (nx * nx + ny * ny + nz * nz)
-    if scale <= 0.0:
-        return lights[0]
-    facing = -(dx * nx + dy * ny + dz * nz) / np.sqrt(scale)
-    up = ny / np.sqrt(nx * nx + ny * ny + nz * nz)
-    if facing < 0.0:
-        facing, up = -facing, -up
-    return lights[0] + lights[1] * facing + lights[2] * (0.5 + 0.5 * up)
+def mip_level(texels: float) -> int:
+    """The level with one to four texels under a pixel that covers so many of the full texture.
+
+    Rather too sharp than too soft: words and small things are what a model is asked about.
+    """
+    return min(max((math.frexp(texels)[1] - 1) >> 1, 0), LEVELS - 1)
 
 
 @compiled
 def texel_span(position: float, size: int) -> tuple[int, int, float]:
     """The two texels around a position in texels, wrapped, and the weight of the second."""
-    base = np.floor(position)
+    base = math.floor(position)
     first = int(base) % size
-    second = first + 1
-    if second == size:
-        second = 0
+    second = first + 1 if first + 1 < size else 0
     return first, second, position - base
 
 
 @compiled
-def bilinear(atlas: Atlas, material: int, u: float, v: float) -> tuple[float, float, float]:
-    """Linear colour of a material's texture, filtered between four texels."""
-    rows, columns = atlas.sizes_px[material, 0], atlas.sizes_px[material, 1]
+def mixed(texels: tuple[int, int, int, int], wx: float, wy: float, shift: int) -> float:
+    """One linear colour channel between four texels."""
+    a, b, c, d = texels
+    upper = decode_channel(a, shift) * (1.0 - wx) + decode_channel(b, shift) * wx
+    lower = decode_channel(c, shift) * (1.0 - wx) + decode_channel(d, shift) * wx
+    return upper * (1.0 - wy) + lower * wy
+
+
+@compiled
+def corners_around(
+    atlas: Atlas, hits: Hits, i: int, level: int
+) -> tuple[tuple[int, int, int, int], float, float]:
+    """The four texels around hit i at a level of its texture, with the weights between them."""
+    triangle = int(hits.triangles[i])
+    material = atlas.material_of_triangle[triangle]
+    b1, b2 = hits.barycentrics[i, 0], hits.barycentrics[i, 1]
+    b0 = 1.0 - b1 - b2
+    uvs = atlas.uvs
+    u = b0 * uvs[triangle, 0, 0] + b1 * uvs[triangle, 1, 0] + b2 * uvs[triangle, 2, 0]
+    v = b0 * uvs[triangle, 0, 1] + b1 * uvs[triangle, 1, 1] + b2 * uvs[triangle, 2, 1]
+    rows, columns = atlas.sizes_px[material, level, 0], atlas.sizes_px[material, level, 1]
     left, right, wx = texel_span(u * columns - 0.5, columns)
     # Row 0 is the top of the picture while v grows upwards.
     top, bottom, wy = texel_span((1.0 - v) * rows - 0.5, rows)
-    upper = atlas.offsets[material] + top * columns
-    lower = atlas.offsets[material] + bottom * columns
-    a, b = atlas.texels[upper + left], atlas.texels[upper + right]
-    c, d = atlas.texels[lower + left], atlas.texels[lower + right]
-    wd = wx * wy
-    wb, wc = wx - wd, wy - wd
-    wa = 1.0 - wx - wc
-    return (
-        wa * DECODED[a[0]] + wb * DECODED[b[0]] + wc * DECODED[c[0]] + wd * DECODED[d[0]],
-        wa * DECODED[a[1]] + wb * DECODED[b[1]] + wc * DECODED[c[1]] + wd * DECODED[d[1]],
-        wa * DECODED[a[2]] + wb * DECODED[b[2]] + wc * DECODED[c[2]] + wd * DECODED[d[2]],
+    upper = atlas.offsets[material, level] + top * columns
+    lower = atlas.offsets[material, level] + bottom * columns
+    texels = atlas.texels
+    four = (
+        int(texels[upper + left]),
+        int(texels[upper + right]),
+        int(texels[lower + left]),
+        int(texels[lower + right]),
     )
+    return four, wx, wy
 
 
 @compiled
-def surface_colour(atlas: Atlas, triangle: int, b1: float, b2: float) -> tuple[float, float, float]:
-    """Unlit linear colour at barycentrics of a triangle: texture × material × vertex colour."""
-    material = atlas.material_of_triangle[triangle]
-    b0 = 1.0 - b1 - b2
-    colour = atlas.colours[material]
-    red, green, blue = colour[0], colour[1], colour[2]
-    if atlas.sizes_px[material, 0] > 0:
-        uv = atlas.uvs[triangle]
-        u = b0 * uv[0, 0] + b1 * uv[1, 0] + b2 * uv[2, 0]
-        v = b0 * uv[0, 1] + b1 * uv[1, 1] + b2 * uv[2, 1]
-        r, g, b = bilinear(atlas, material, u, v)
-        red, green, blue = red * r, green * g, blue * b
-    if len(atlas.vertex_colours) > 0:
-        corners = atlas.triangles[triangle]
-        p = atlas.vertex_colours[corners[0]]
-        q = atlas.vertex_colours[corners[1]]
-        s = atlas.vertex_colours[corners[2]]
-        red *= b0 * DECODED[p[0]] + b1 * DECODED[q[0]] + b2 * DECODED[s[0]]
-        green *= b0 * DECODED[p[1]] + b1 * DECODED[q[1]] + b2 * DECODED[s[1]]
-        blue *= b0 * DECODED[p[2]] + b1 * DECODED[q[2]] + b2 * DECODED[s[2]]
-    return red, green, blue
+def vertex_channel(atlas: Atlas, hits: Hits, i: int, shift: int) -> float:
+    """One linear channel of the vertex colours at hit i."""
+    triangle = int(hits.triangles[i])
+    b1, b2 = hits.barycentrics[i, 0], hits.barycentrics[i, 1]
+    colours, corners = atlas.vertex_colours, atlas.triangles
+    first = decode_channel(int(colours[corners[triangle, 0]]), shift)
+    second = decode_channel(int(colours[corners[triangle, 1]]), shift)
+    third = decode_channel(int(colours[corners[triangle, 2]]), shift)
+    return (1.0 - b1 - b2) * first + b1 * second + b2 * third
 
 
 @compiled
-def shade(rgb: UInt8[np.ndarray, "rays 3"], hits: Hits, atlas: Atlas, lighting: Lighting) -> None:
-    """Colour of each ray's first hit, or the background."""
+def shade(
+    rgb: UInt8[np.ndarray, "rays 3"], hits: Hits, atlas: Atlas, look: tuple[Lighting, float]
+) -> None:
+    """Colour of each ray's first hit, or the background.
+
+    `look` holds the light and the squared width of a pixel at one metre.
+    """
+    light, pixel_m2 = look
     for i in range(len(rgb)):
-        triangle = np.int64(hits.triangles[i])
+        triangle = int(hits.triangles[i])
         if triangle >= len(atlas.material_of_triangle):
-            for k in range(3):
-                rgb[i, k] = lighting.background[k]
+            rgb[i, 0], rgb[i, 1], rgb[i, 2] = light.red, light.green, light.blue
             continue
-        weights = hits.barycentrics[i]
-        red, green, blue = surface_colour(atlas, triangle, weights[0], weights[1])
-        light = np.float32(1.0)
-        if not atlas.unlit[atlas.material_of_triangle[triangle]]:
-            light = brightness(hits.rays[i, 3:], hits.normals[i], lighting.lights)
-        rgb[i, 0] = encode_level(red * light)
-        rgb[i, 1] = encode_level(green * light)
-        rgb[i, 2] = encode_level(blue * light)
+        material = atlas.material_of_triangle[triangle]
+        cosine, up, length = facing(hits, i)
+        red, green, blue = (
+            atlas.colours[material, 0],
+            atlas.colours[material, 1],
+            atlas.colours[material, 2],
+        )
+        if not atlas.unlit[material]:
+            lit = light.ambient + light.headlight * cosine + light.sky * (0.5 + 0.5 * up)
+            red, green, blue = red * lit, green * lit, blue * lit
+        if atlas.sizes_px[material, 0, 0] > 0:
+            area_m2 = pixel_m2 * hits.t_hit[i] * hits.t_hit[i]
+            seen = max(cosine, LEAST_FACING) * length
+            level = mip_level(atlas.texel_density[triangle] * area_m2 / seen)
+            four, wx, wy = corners_around(atlas, hits, i, level)
+            red *= mixed(four, wx, wy, 0)
+            green *= mixed(four, wx, wy, 8)
+            blue *= mixed(four, wx, wy, 16)
+        if len(atlas.vertex_colours) > 0:
+            red *= vertex_channel(atlas, hits, i, 0)
+            green *= vertex_channel(atlas, hits, i, 8)
+            blue *= vertex_channel(atlas, hits, i, 16)
+        rgb[i, 0] = encode_level(red)
+        rgb[i, 1] = encode_level(green)
+        rgb[i, 2] = encode_level(blue)
+
+
+@compiled
+def find_cutouts(through: Bool[np.ndarray, " rays"], hits: Hits, atlas: Atlas) -> int:
+    """Mark hits on surfaces that are not there by alpha; returns how many."""
+    count = 0
+    for i in range(len(through)):
+        through[i] = False
+        triangle = int(hits.triangles[i])
+        if triangle >= len(atlas.material_of_triangle):
+            continue
+        material = atlas.material_of_triangle[triangle]
+        if atlas.cutout_alphas[material] <= 0.0:
+            continue
+        alpha = atlas.colours[material, 3]
+        if atlas.sizes_px[material, 0, 0] > 0:
+            (a, b, c, d), wx, wy = corners_around(atlas, hits, i, 0)
+            upper = alpha_of(a) * (1.0 - wx) + alpha_of(b) * wx
+            lower = alpha_of(c) * (1.0 - wx) + alpha_of(d) * wx
+            alpha *= upper * (1.0 - wy) + lower * wy
+        if alpha < atlas.cutout_alphas[material]:
+            through[i] = True
+            count += 1
+    return count

@@ -115,7 +115,7 @@ def _check_indices(name: str, triangles: Any, vertices: int) -> None:
 
 
 def _corner_uvs(mesh: Any) -> Float32[np.ndarray, "triangles 3 2"]:
-    return np.ascontiguousarray(np.asarray(mesh.visual.uv, np.float32)[mesh.faces])
+    return np.ascontiguousarray(np.nan_to_num(np.asarray(mesh.visual.uv, np.float32))[mesh.faces])
 
 
 def _vertex_colours(mesh: Any, *, linear: bool) -> UInt8[np.ndarray, "vertices 4"] | None:

@@ -188,6 +188,8 @@ def _problem(scene: Scene) -> str:
         return f"expected indices of {vertices} vertices, came {lowest} to {highest}"
     if not np.isfinite(scene.vertices_m).all():
         return "expected finite vertices, came nan or inf; export the mesh again"
+    if scene.uvs is not None and not np.isfinite(scene.uvs).all():
+        return "expected finite texture coordinates, came nan or inf; export the mesh again"
     edges = [0, *(part.stop for part in scene.parts)]
     starts = [*(part.first for part in scene.parts), triangles]
     if edges != starts:
