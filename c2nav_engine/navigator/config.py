@@ -5,9 +5,12 @@ from __future__ import annotations
 import enum
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from typing import Any, cast
 
 from c2nav_engine.controller.config import ControllerConfig, GateConfig
+from c2nav_engine.errors import TraceError
 
 
 class Direction(enum.StrEnum):
@@ -79,3 +82,29 @@ class LoopConfig:
         """Hash of the plain values; equal configs under two preset names share it."""
         text = json.dumps(self.as_json(), sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
+
+    @staticmethod
+    def from_json(values: Mapping[str, object]) -> LoopConfig:
+        """Rebuild a recorded config; raises `TraceError` for values this version cannot read."""
+        try:
+            variant = _fields(values["variant"])
+            return LoopConfig(
+                variant=Variant(
+                    direction=Direction(variant.pop("direction")),
+                    advance=Advance(variant.pop("advance")),
+                    terminal=Terminal(variant.pop("terminal")),
+                    **variant,
+                ),
+                controller=ControllerConfig(**_fields(values["controller"])),
+                gates=GateConfig(**_fields(values["gates"])),
+            )
+        except (KeyError, TypeError, ValueError) as error:
+            message = (
+                f"expected a loop config of this version, came {sorted(values)} ({error}); "
+                "read the trace with the version that wrote it"
+            )
+            raise TraceError(message) from error
+
+
+def _fields(values: object) -> dict[str, Any]:
+    return dict(cast("Mapping[str, Any]", values))

@@ -11,10 +11,7 @@ from dataclasses import dataclass, field
 from c2nav_engine.contract.outcome import Answered
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.geometry import Pose
-from c2nav_engine.navigator.requests import Moved, Request, Seen
-
-Response = Seen | Moved | Answered | None
-"""What the core was sent: for `Look`, `Move`, `Ask`, and `Note` or `Stop`."""
+from c2nav_engine.navigator.requests import Request, Response
 
 
 @dataclass(frozen=True, slots=True)
