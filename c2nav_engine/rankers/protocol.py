@@ -9,6 +9,7 @@ from c2nav_engine.contract.prompt import Prompt, Ranked, Reply
 from c2nav_engine.contract.question import Question
 
 
+@runtime_checkable
 class Adapter(Protocol):
     """Carries one prompt to something that answers; knows nothing of orders or fallbacks."""
 
@@ -45,6 +46,7 @@ class Closable(Protocol):
         ...
 
 
+@runtime_checkable
 class Ranker(Protocol):
     """`rank(question) -> Ranked`: an adapter inside the wrapper that owns the protocol."""
 
