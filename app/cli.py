@@ -1,0 +1,76 @@
+"""The `c2nav` command: one small function per subcommand, each in `app.commands`.
+
+Exit codes: 0 done; 1 a check found a difference or an episode ended in `error`; 2 bad usage or bad
+input, with one message on standard error; 130 interrupted, with everything finished kept.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable, Sequence
+
+import tyro
+
+from c2nav_engine.errors import C2NavError, InputError, MissingExtra, RankerStopped
+
+COMMANDS = (
+    "doctor",
+    "episodes",
+    "inspect",
+    "run",
+    "scene",
+    "replay",
+    "question",
+    "fork",
+    "trace",
+)
+"""Subcommands; each is a function, or a table of them, of that name in `app.commands`."""
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run one subcommand and exit with its code."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    debug = "--debug" in words
+    words = [word for word in words if word != "--debug"]
+    try:
+        code = _dispatch(words)
+    except KeyboardInterrupt:
+        sys.stderr.write("interrupted; everything finished is kept\n")
+        code = 130
+    except C2NavError as error:
+        if debug:
+            raise
+        sys.stderr.write(f"c2nav: {error}\n")
+        code = 2 if isinstance(error, InputError | MissingExtra) else 1
+        code = 2 if isinstance(error, RankerStopped) else code
+    sys.exit(code)
+
+
+def _dispatch(words: list[str]) -> int:
+    """Load only the named subcommand: each brings its own heavy imports."""
+    name = next((word for word in words if not word.startswith("-")), "")
+    if name not in COMMANDS:
+        table = {known: _loaded(known) for known in COMMANDS}
+        functions = {known: f for known, f in table.items() if not isinstance(f, dict)}
+        groups = {
+            f"{known} {inner}": f
+            for known, group in table.items()
+            if isinstance(group, dict)
+            for inner, f in group.items()
+        }
+        return _code(tyro.extras.subcommand_cli_from_dict({**functions, **groups}, args=words))
+    command = _loaded(name)
+    if isinstance(command, dict):
+        return _code(
+            tyro.extras.subcommand_cli_from_dict(command, args=words[1:], prog=f"c2nav {name}")
+        )
+    return _code(tyro.cli(command, args=words[1:], prog=f"c2nav {name}"))
+
+
+def _code(result: object) -> int:
+    return result if isinstance(result, int) else 0
+
+
+def _loaded(name: str) -> Callable[..., int] | dict[str, Callable[..., int]]:
+    return getattr(importlib.import_module(f"app.commands.{name}"), name)

@@ -1,0 +1,1 @@
+"""One module a subcommand of `c2nav`; `app.cli` lists them."""
