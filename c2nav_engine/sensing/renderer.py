@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Float32, UInt8
@@ -28,6 +28,7 @@ class Image:
     world_from_camera: Float[np.ndarray, "4 4"]
 
 
+@runtime_checkable
 class Renderer(Protocol):
     """Anything that turns poses into pictures; the same pose always gives the same bytes."""
 

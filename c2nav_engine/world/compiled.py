@@ -14,6 +14,9 @@ def compiled(function: Function) -> Function:
     Compiled functions hold no interpreter lock, so plain threads share their work. Arithmetic
     keeps its written order (no fast-math), so the same input gives the same bytes; division by
     zero gives inf or nan as in numpy.
+
+    The code on disk is renewed when the function's own file changes, not when a compiled helper
+    in another file does: after editing a helper, touch the files that use it.
     """
     import numba
 

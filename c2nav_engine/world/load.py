@@ -18,11 +18,14 @@ __all__ = ["Up", "load_scene", "scene_path"]
 Up = Literal["auto", "y", "z"]
 """Which axis of the file points up; `auto` takes the one with more floor and ceiling across it."""
 
+CLEARLY_MORE = 1.25
+"""How much clearer z must be than y before a file is called Z up: glTF prescribes Y."""
+
 SAMPLED_TRIANGLES = 500_000
 """Enough to tell floors from walls in a mesh of any size."""
 
 
-def load_scene(path: Path, *, up: Up = "y") -> Scene:
+def load_scene(path: Path, *, up: Up = "auto") -> Scene:
     """Read a scene file into the world frame (Y up, metres).
 
     Node transforms are applied, object names become part names, textures, material colours and
@@ -30,7 +33,9 @@ def load_scene(path: Path, *, up: Up = "y") -> Scene:
 
     Args:
         path: A `.glb`, `.gltf`, `.ply` or `.obj` file.
-        up: The file's up axis. Z up is turned as habitat does: (x, y, z) becomes (x, z, −y).
+        up: The file's up axis; habitat's Matterport3D files have Z up against glTF's rule,
+            so the default looks at the mesh. Z up is turned as habitat does: (x, y, z) becomes
+            (x, z, −y).
 
     Raises:
         SceneError: The file is missing, empty, cut short or holds no triangle.
@@ -46,11 +51,17 @@ def load_scene(path: Path, *, up: Up = "y") -> Scene:
 
 
 def up_axis(pieces: list[Piece]) -> Literal["y", "z"]:
-    """The axis, y or z, that more surface lies square to: floors and ceilings outweigh walls."""
-    across_m2 = np.zeros(3)
+    """The axis, y or z, that is up: much surface lies square to it, and little length along it.
+
+    Floors and ceilings outweigh the walls that face any one way, and buildings are flat.
+    """
+    across_m2, low_m, high_m = np.zeros(3), np.full(3, np.inf), np.full(3, -np.inf)
     for piece in pieces:
         across_m2 += _area_across_m2(piece.vertices_m, piece.triangles)
-    return "z" if across_m2[2] > across_m2[1] else "y"
+        low_m = np.minimum(low_m, piece.vertices_m.min(axis=0))
+        high_m = np.maximum(high_m, piece.vertices_m.max(axis=0))
+    _, y_score, z_score = across_m2 / np.maximum(high_m - low_m, 1e-6)
+    return "z" if z_score > CLEARLY_MORE * y_score else "y"
 
 
 def _area_across_m2(
