@@ -96,7 +96,8 @@ class TraceFile:
 
     def _summary(self, footer: Footer) -> None:
         end = self._size - FOOTER_BYTES - len(MAGIC)
-        summary = self._read(footer.summary_start, end - footer.summary_start)
+        start = footer.summary_start
+        summary = self._read(start, end - start) if 0 < start <= end else b""
         if not summary_crc_holds(footer, summary):
             message = (
                 f"damaged trace: the index of {self.path} does not hold what was written; "

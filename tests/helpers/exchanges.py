@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from itertools import cycle as endlessly
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -54,6 +55,7 @@ from c2nav_engine.navigator.requests import (
 )
 from c2nav_engine.runner.exchange import Exchange, Override, Response, Truth
 from c2nav_engine.runner.record import EpisodeOutcome, Footer, Header
+from c2nav_engine.runner.recording import TraceWriter
 from tests.helpers.questions import INSTRUCTION, LEGS, question
 
 GOAL_M = (0.0, 0.0, -8.0)
@@ -115,6 +117,21 @@ def header_for(run: str, *, seed: int = 0) -> Header:
         templates=template.texts(),
         extra={"note": "made up"},
     )
+
+
+def write_fake(path: Path, cycles: int = 3, *, seed: int = 0, side_px: int = 16) -> FakeEpisode:
+    """Write a made-up episode as a finished trace."""
+    episode = fake_episode(cycles, seed=seed, side_px=side_px)
+    write_episode(path, episode)
+    return episode
+
+
+def write_episode(path: Path, episode: FakeEpisode) -> str:
+    """Write an episode as a finished trace; returns its digest."""
+    with TraceWriter(path, episode.header) as writer:
+        for exchange in episode.exchanges:
+            writer.write(exchange)
+        return writer.finish(episode.footer)
 
 
 class _Maker:

@@ -11,14 +11,7 @@ from c2nav_engine.navigator.requests import Look, Rig, Seen
 from c2nav_engine.runner.exchange import Exchange
 from c2nav_engine.runner.recorded import open_trace, read_trace
 from c2nav_engine.runner.recording import TraceWriter
-from tests.helpers.exchanges import FakeEpisode, fake_episode
-
-
-def written(path: Path, episode: FakeEpisode) -> str:
-    with TraceWriter(path, episode.header) as writer:
-        for exchange in episode.exchanges:
-            writer.write(exchange)
-        return writer.finish(episode.footer)
+from tests.helpers.exchanges import FakeEpisode, fake_episode, write_episode
 
 
 def without_ring_bytes(exchange: Exchange) -> Exchange:
@@ -35,7 +28,7 @@ def without_ring_bytes(exchange: Exchange) -> Exchange:
 
 def test_a_trace_reads_back_as_what_was_written(tmp_path: Path) -> None:
     episode = fake_episode(9)
-    digest = written(tmp_path / "a.mcap", episode)
+    digest = write_episode(tmp_path / "a.mcap", episode)
     trace = read_trace(tmp_path / "a.mcap")
     assert trace.exchanges == tuple(map(without_ring_bytes, episode.exchanges))
     assert trace.header == episode.header
@@ -45,22 +38,22 @@ def test_a_trace_reads_back_as_what_was_written(tmp_path: Path) -> None:
 
 
 def test_writing_twice_gives_the_same_bytes(tmp_path: Path) -> None:
-    assert written(tmp_path / "a.mcap", fake_episode(4)) == written(
+    assert write_episode(tmp_path / "a.mcap", fake_episode(4)) == write_episode(
         tmp_path / "b.mcap", fake_episode(4)
     )
 
 
 def test_what_was_read_can_be_written_again(tmp_path: Path) -> None:
-    written(tmp_path / "a.mcap", fake_episode(5))
+    write_episode(tmp_path / "a.mcap", fake_episode(5))
     first = read_trace(tmp_path / "a.mcap")
     again = FakeEpisode(first.header, first.exchanges, first.footer)
-    written(tmp_path / "b.mcap", again)
+    write_episode(tmp_path / "b.mcap", again)
     assert read_trace(tmp_path / "b.mcap").exchanges == first.exchanges
 
 
 def test_a_decision_alone_comes_with_all_its_pictures(tmp_path: Path) -> None:
     episode = fake_episode(6)
-    written(tmp_path / "a.mcap", episode)
+    write_episode(tmp_path / "a.mcap", episode)
     decisions = [each for each in episode.exchanges if each.decision is not None]
     with open_trace(tmp_path / "a.mcap") as trace:
         assert trace.decision_count == len(decisions)
@@ -68,7 +61,7 @@ def test_a_decision_alone_comes_with_all_its_pictures(tmp_path: Path) -> None:
 
 
 def test_decisions_without_pictures_differ_in_nothing_else(tmp_path: Path) -> None:
-    written(tmp_path / "a.mcap", fake_episode(6))
+    write_episode(tmp_path / "a.mcap", fake_episode(6))
     with open_trace(tmp_path / "a.mcap") as trace:
         for light in trace.decisions():
             assert light.decision is not None
@@ -79,7 +72,7 @@ def test_decisions_without_pictures_differ_in_nothing_else(tmp_path: Path) -> No
 
 def test_any_picture_is_found_by_its_digest(tmp_path: Path) -> None:
     episode = fake_episode(4)
-    written(tmp_path / "a.mcap", episode)
+    write_episode(tmp_path / "a.mcap", episode)
     seen = next(each for each in episode.exchanges if isinstance(each.response, Seen)).response
     assert isinstance(seen, Seen)
     picture = seen.views[0].picture

@@ -1,0 +1,157 @@
+from __future__ import annotations
+
+import os
+import random
+import signal
+from pathlib import Path
+
+import pytest
+
+from c2nav_engine.errors import TraceError, UnfinishedTrace, UsageError
+from c2nav_engine.runner.record import EpisodeOutcome
+from c2nav_engine.runner.recorded import Trace, open_trace, read_trace
+from c2nav_engine.runner.recording import TraceWriter
+from c2nav_engine.traces import check, recover
+from tests.helpers.exchanges import FakeEpisode, fake_episode, write_fake
+
+
+@pytest.fixture
+def trace(tmp_path: Path) -> Path:
+    write_fake(tmp_path / "whole.mcap")
+    return tmp_path / "whole.mcap"
+
+
+def test_a_sound_trace_has_no_fault(trace: Path) -> None:
+    assert check(trace) == []
+
+
+def test_any_flipped_byte_is_found(trace: Path) -> None:
+    data = trace.read_bytes()
+    flipped = trace.with_name("flipped.mcap")
+    # A prime stride meets every kind of record; the ends hold the magic, footer and index.
+    places = {*range(0, len(data), 479), *range(60), *range(len(data) - 60, len(data))}
+    for place in sorted(places):
+        flipped.write_bytes(data[:place] + bytes([data[place] ^ 0x10]) + data[place + 1 :])
+        assert check(flipped), f"the flip at byte {place} of {len(data)} went unseen"
+
+
+def test_reading_a_damaged_trace_says_so(trace: Path) -> None:
+    data = bytearray(trace.read_bytes())
+    data[len(data) // 2] ^= 0x10
+    trace.write_bytes(data)
+    with pytest.raises(TraceError, match="damaged trace"):
+        read_trace(trace)
+
+
+def test_an_unfinished_trace_says_what_is_there_and_what_to_do(trace: Path) -> None:
+    cut = trace.with_name("run.mcap.part")
+    cut.write_bytes(trace.read_bytes()[: trace.stat().st_size // 2])
+    with pytest.raises(UnfinishedTrace) as caught:
+        open_trace(cut)
+    text = str(caught.value)
+    assert "unfinished trace" in text
+    assert f"c2nav trace recover {cut} --out run.recovered.mcap" in text
+    assert "0 messages" not in text
+
+
+@pytest.mark.parametrize("content", [b"", b"\x89MCAP0\r\n", b"not a trace at all" * 9])
+def test_what_is_no_trace_is_refused_in_words(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "x.mcap"
+    path.write_bytes(content)
+    with pytest.raises(TraceError):
+        open_trace(path)
+    with pytest.raises(TraceError, match="nothing to recover"):
+        recover(path, tmp_path / "y.mcap")
+    assert [file.name for file in tmp_path.iterdir()] == ["x.mcap"]
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(TraceError, match=r"none at .*gone\.mcap"):
+        open_trace(tmp_path / "gone.mcap")
+
+
+def test_recovering_onto_itself_is_refused(trace: Path) -> None:
+    with pytest.raises(UsageError, match="another file"):
+        recover(trace, trace)
+
+
+def assert_beginning(found: Trace, episode: FakeEpisode, *, at_least: int) -> None:
+    count = len(found.exchanges)
+    assert count >= at_least
+    for came, written in zip(found.exchanges, episode.exchanges, strict=False):
+        assert (came.index, came.step, came.ranked) == (
+            written.index,
+            written.step,
+            written.ranked,
+        )
+        assert type(came.request) is type(written.request)
+    assert found.header == episode.header
+    assert not found.complete
+    assert found.footer.outcome is EpisodeOutcome.INTERRUPTED
+
+
+def test_every_beginning_of_a_trace_recovers(tmp_path: Path) -> None:
+    episode = write_fake(tmp_path / "whole.mcap", cycles=2)
+    data = (tmp_path / "whole.mcap").read_bytes()
+    cut, out = tmp_path / "cut.mcap", tmp_path / "out.mcap"
+    kept = 0
+    for length in range(20_000, len(data) - 1, 1499):
+        cut.write_bytes(data[:length])
+        recover(cut, out)
+        assert [fault for fault in check(out) if "complete" not in str(fault)] == []
+        found = read_trace(out)
+        if found.complete:  # only the index was missing
+            assert len(found.exchanges) == len(episode.exchanges)
+        else:
+            assert_beginning(found, episode, at_least=kept)
+            kept = len(found.exchanges)
+    assert kept > len(episode.exchanges) // 2
+
+
+def test_a_damaged_chunk_costs_only_itself(tmp_path: Path) -> None:
+    write_fake(tmp_path / "whole.mcap")
+    data = bytearray((tmp_path / "whole.mcap").read_bytes())
+    data[len(data) // 2] ^= 0x10
+    (tmp_path / "bad.mcap").write_bytes(data)
+    found = recover(tmp_path / "bad.mcap", tmp_path / "good.mcap")
+    whole = recover(tmp_path / "whole.mcap", tmp_path / "copy.mcap")
+    assert found.damaged_chunks == 1
+    assert 0 < whole.messages - found.messages < 20
+    assert not found.complete and whole.complete
+
+
+def kill_and_recover(folder: Path, *, seed: int) -> None:
+    """Kill a process that writes a trace, at a random moment, and look at what is left."""
+    episode = fake_episode(4, seed=1, side_px=32)
+    path = folder / "killed.mcap"
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child == 0:  # pragma: no cover - it ends by SIGKILL
+        with TraceWriter(path, episode.header) as writer:
+            for exchange in episode.exchanges:
+                writer.write(exchange)
+                os.write(writing, b".")
+        signal.pause()
+    wanted = random.Random(seed).randrange(1, len(episode.exchanges))
+    finished = 0
+    while finished < wanted:
+        finished += len(os.read(reading, wanted - finished))
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    os.close(writing)
+    finished += len(os.read(reading, 4096))
+    os.close(reading)
+    assert not path.exists()
+    recover(path.with_name("killed.mcap.part"), folder / "out.mcap")
+    assert_beginning(read_trace(folder / "out.mcap"), episode, at_least=finished)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_kill_loses_no_finished_exchange(tmp_path: Path, seed: int) -> None:
+    kill_and_recover(tmp_path, seed=seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(100, 150))
+def test_fifty_kills_lose_no_finished_exchange(tmp_path: Path, seed: int) -> None:
+    kill_and_recover(tmp_path, seed=seed)
