@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
 
-from google.protobuf.message import DecodeError, Message
+from google.protobuf.message import Message
 
 from c2nav_engine.contract.question import Picture
 from c2nav_engine.errors import TraceError
@@ -18,14 +18,12 @@ from c2nav_engine.runner.trace_exchanges import exchange_of, truth_of
 from c2nav_engine.runner.trace_header import footer_of, header_of
 from c2nav_engine.traces.check import data_section_holds
 from c2nav_engine.traces.contract_messages import Show
+from c2nav_engine.traces.moments import parsed, picture_table
 from c2nav_engine.traces.pb.common_pb2 import Picture as PictureMessage
-from c2nav_engine.traces.pb.control_pb2 import Control
-from c2nav_engine.traces.pb.decision_pb2 import Decision
 from c2nav_engine.traces.pb.evaluation_pb2 import Evaluation
-from c2nav_engine.traces.pb.route_pb2 import Sketch
 from c2nav_engine.traces.reader import TraceFile
 from c2nav_engine.traces.records import Stored
-from c2nav_engine.traces.topics import EXCHANGE_TOPICS, TOPICS
+from c2nav_engine.traces.topics import EXCHANGE_TOPICS
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +145,7 @@ class OpenTrace:
         """Where every picture lies, from the facts alone."""
         places: dict[str, PictureMessage] = {}
         for stored in self.file.messages(*EXCHANGE_TOPICS, "/eval"):
-            for each in _table(_parsed(stored)):
+            for each in picture_table(parsed(stored)):
                 if each.topic:
                     places.setdefault(each.sha256, each)
         return places
@@ -170,7 +168,7 @@ class OpenTrace:
         pending: Message | None = None
         truth: Truth | None = None
         for stored in found:
-            message = _parsed(stored)
+            message = parsed(stored)
             if isinstance(message, Evaluation):
                 truth = truth_of(message, self._depth(message, pictures=pictures))
                 continue
@@ -186,7 +184,7 @@ class OpenTrace:
         return self._bytes(place) if pictures and place is not None else b""
 
     def _show(self, message: Message, shared: dict[str, Picture], *, pictures: bool) -> Show:
-        places = {each.sha256: each for each in _table(message)}
+        places = {each.sha256: each for each in picture_table(message)}
 
         def show(digest: str) -> Picture | None:
             if not digest:
@@ -213,15 +211,3 @@ class OpenTrace:
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-
-def _parsed(stored: Stored) -> Message:
-    try:
-        return TOPICS[stored.topic].message.FromString(stored.data)
-    except DecodeError as error:
-        message = f"damaged trace: {stored.topic} {stored.sequence} is no message ({error})"
-        raise TraceError(message) from error
-
-
-def _table(message: Message) -> Sequence[PictureMessage]:
-    return message.pictures if isinstance(message, Control | Decision | Sketch | Evaluation) else ()

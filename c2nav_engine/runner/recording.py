@@ -14,8 +14,8 @@ from c2nav_engine.runner.trace_draft import Draft, Places
 from c2nav_engine.runner.trace_header import footer_facts, header_facts, header_files
 from c2nav_engine.runner.trace_messages import exchange_message
 from c2nav_engine.runner.trace_views import Views
+from c2nav_engine.traces.attachments import LAYOUT_FILE, foxglove_layout
 from c2nav_engine.traces.contract_messages import pose_message
-from c2nav_engine.traces.layout import LAYOUT_FILE, foxglove_layout
 from c2nav_engine.traces.pb.evaluation_pb2 import Evaluation
 from c2nav_engine.traces.reader import METADATA, STARTED
 from c2nav_engine.traces.topics import THUMBNAIL_TOPIC, log_time_ns

@@ -11,12 +11,13 @@ from pydantic import TypeAdapter, ValidationError
 
 from c2nav_engine.errors import TraceError
 from c2nav_engine.runner.record import EpisodeOutcome, Footer, Header
+from c2nav_engine.traces.attachments import (
+    CONFIG_FILE,
+    EPISODE_FILE,
+    HEADER_FILE,
+    TEMPLATE_FOLDER,
+)
 from c2nav_engine.traces.topics import SCHEMA_VERSION
-
-HEADER_FILE = "header.json"
-CONFIG_FILE = "config.json"
-EPISODE_FILE = "episode.json"
-TEMPLATE_FOLDER = "templates/"
 
 _HEADER = TypeAdapter(Header)
 

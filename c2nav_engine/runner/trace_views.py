@@ -2,15 +2,7 @@
 
 from __future__ import annotations
 
-from c2nav_engine.contract.outcome import (
-    Abstention,
-    Answered,
-    Cardinal,
-    Invalid,
-    Ordering,
-    Tie,
-    TransportFailure,
-)
+from c2nav_engine.contract.outcome import Cardinal, Ordering
 from c2nav_engine.episodes.profile import Profile
 from c2nav_engine.geometry import Pose
 from c2nav_engine.navigator.requests import (
@@ -37,6 +29,7 @@ from c2nav_engine.traces.viewer_messages import (
     path_in_world,
     pose_in_world,
 )
+from c2nav_engine.traces.words import outcome_words
 from c2nav_engine.traces.writer import Outgoing
 
 
@@ -134,15 +127,3 @@ def _note_text(exchange: Exchange, note: Note) -> tuple[str, str, bool]:
         return "ladder", words.removesuffix(", "), bool(record.vetoes)
     assert isinstance(record, Event)
     return "event", f"{record.name}: {record.detail}", record.name in ("fallback", "stalled")
-
-
-def outcome_words(outcome: Answered) -> str:
-    """An outcome on one line: "left > front = right", "abstained: orders disagree"."""
-    if isinstance(outcome, Ordering | Tie):
-        return " > ".join(" = ".join(tier) for tier in outcome.tiers)
-    if isinstance(outcome, Cardinal):
-        return f"{outcome.value:g}"
-    name = type(outcome).__name__.lower()
-    if isinstance(outcome, Abstention | Invalid | TransportFailure):
-        return f"{name}: {outcome.reason}"
-    return name

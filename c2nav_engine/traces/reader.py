@@ -232,13 +232,17 @@ class TraceFile:
 
     def messages(self, *topics: str) -> Iterator[Stored]:
         """Messages of these topics (all when none is named), in the order they were written."""
+        for chunk in self.chunks(*topics):
+            yield from chunk
+
+    def chunks(self, *topics: str) -> Iterator[list[Stored]]:
+        """The same, chunk by chunk as it was written."""
         wanted = set(topics or self._by_topic)
         channels = {key for key, channel in self._channels.items() if channel.topic in wanted}
         for chunk in self._chunks:
             if channels.intersection(chunk.message_index_offsets):
-                for message in self._messages_in(chunk):
-                    if message.channel_id in channels:
-                        yield self._stored(message)
+                messages = self._messages_in(chunk)
+                yield [self._stored(each) for each in messages if each.channel_id in channels]
 
     def times_ns(self, topic: str) -> list[int]:
         """Log times of a topic's chunks, without reading them.
