@@ -11,6 +11,7 @@ from __future__ import annotations
 import heapq
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -19,9 +20,7 @@ from c2nav_engine.geometry import Point
 from c2nav_engine.world.walkable_compiled import compiled
 from c2nav_engine.world.walkable_places import places
 from c2nav_engine.world.walkable_spans import NONE, Cells, Place, Spans
-from c2nav_engine.world.walkable_walk import column_of, walk
-
-_Field = tuple[Float[np.ndarray, " n"], Int[np.ndarray, " n"]]
+from c2nav_engine.world.walkable_walk import column_of, inside, walk
 
 ROOT = -2
 """The parent that stands for the target point itself, which lies anywhere in its cell."""
@@ -29,61 +28,141 @@ ROOT = -2
 _GAIN_M = 1e-7  # improvements below this are rounding
 
 
-@compiled
-def solve_field(spans: Spans, target_span: int, target: Cells) -> _Field:
-    """Distances of all spans' middles to the target at (x, z) in cells.
+class FieldArrays(NamedTuple):
+    """One solved field; a named tuple because kernels read it directly.
 
-    Returns:
-        (distances in metres, inf where there is no way; parents: a span whose middle is the next
-        corner, `ROOT` for the target itself, or `NONE`)
+    Attributes:
+        span: The target's span.
+        x: The target's x in cells.
+        z: The target's z in cells.
+        distance_m: (n,) distance from the middle of each span's cell; inf where there is no way.
+        parent: (n,) the span in which a walk turns next, `ROOT` for the target, or `NONE`.
+        turn_x: (n,) where walks turn that turn in this span: its middle or a corner of its cell.
+        turn_z: (n,) z of the same.
+        turn_m: (n,) distance from there.
     """
-    count = spans.column.shape[0]
-    distance_m = np.full(count, np.inf)
-    parent = np.full(count, NONE, np.int64)
-    middle = _middle(spans, target_span)
-    _, _, distance_m[target_span] = walk(spans, target_span, target, middle)
+
+    span: int
+    x: float
+    z: float
+    distance_m: Float[np.ndarray, " n"]
+    parent: Int[np.ndarray, " n"]
+    turn_x: Float[np.ndarray, " n"]
+    turn_z: Float[np.ndarray, " n"]
+    turn_m: Float[np.ndarray, " n"]
+
+
+@compiled
+def solve_field(spans: Spans, target_span: int, target: Cells) -> FieldArrays:
+    """Distances from everywhere to the target at (x, z) in cells."""
+    field = _unsolved(spans, target_span, target)
+    distance_m, parent = field.distance_m, field.parent
+    _, _, distance_m[target_span] = walk(spans, target_span, target, _middle(spans, target_span))
     parent[target_span] = ROOT
-    unseen = np.full(count, NONE, np.int64)  # the corner that a span was last found not to see
+    unseen = np.full(parent.shape[0], NONE, np.int64)  # the turn that a span was found not to see
     heap = [(distance_m[target_span], target_span)]
     while heap:
         reached_m, span = heapq.heappop(heap)
         if reached_m > distance_m[span]:
             continue
-        hung = parent[span]
-        corner_span, corner, corner_m = _corner(spans, hung, (target_span, target), distance_m)
         for side in range(8):
             other = _neighbour(spans.links, span, side)
-            if other == NONE or parent[other] == hung:
+            if other == NONE or parent[other] == parent[span]:
                 continue
-            middle = _middle(spans, other)
-            least_m = corner_m + _flat_m(spans, corner, middle)
-            if least_m >= distance_m[other] - _GAIN_M:
-                continue
-            length_m, by = np.inf, hung
-            if unseen[other] != hung:
-                reached, _, length_m = walk(spans, corner_span, corner, middle)
-                length_m = corner_m + (length_m if reached == other else np.inf)
-            if length_m == np.inf:
-                unseen[other] = hung
-                rise_m = spans.floor_m[other] - spans.floor_m[span]
-                flat_m = _flat_m(spans, _middle(spans, span), middle)
-                length_m = reached_m + math.sqrt(flat_m * flat_m + rise_m * rise_m)
-                by = span
+            length_m, by = _reach(spans, field, (span, other), unseen)
             if length_m < distance_m[other] - _GAIN_M:
-                distance_m[other] = length_m
-                parent[other] = by
+                distance_m[other], parent[other] = length_m, by
+                field.turn_m[other] = np.inf
                 heapq.heappush(heap, (length_m, other))
-    return distance_m, parent
+    for span in range(parent.shape[0]):
+        if field.turn_m[span] == np.inf:
+            field.turn_m[span] = distance_m[span]
+            field.turn_x[span], field.turn_z[span] = _middle(spans, span)
+    return field
 
 
 @compiled
-def _corner(
-    spans: Spans, parent: int, root: Place, distance_m: Float[np.ndarray, " n"]
-) -> tuple[int, Cells, float]:
+def _reach(
+    spans: Spans, field: FieldArrays, step: tuple[int, int], unseen: Int[np.ndarray, " n"]
+) -> tuple[float, int]:
+    """A neighbour's distance, and its parent: what a span hangs on if it sees that, or the span.
+
+    inf where the neighbour already has a way that is no longer.
+    """
+    span, other = step
+    hung = field.parent[span]
+    turn_span, turn, turn_m = _turn(field, hung)
+    middle = _middle(spans, other)
+    if turn_m + _flat_m(spans, turn, middle) >= field.distance_m[other] - _GAIN_M:
+        return np.inf, NONE
+    if unseen[other] != hung:
+        reached, _, length_m = walk(spans, turn_span, turn, middle)
+        if reached == other and length_m < np.inf:
+            return turn_m + length_m, hung
+    unseen[other] = hung
+    if field.turn_m[span] == np.inf:
+        _choose_turn(field, span, other)
+    return _via(spans, field, span, other), span
+
+
+@compiled
+def _unsolved(spans: Spans, span: int, target: Cells) -> FieldArrays:
+    """A field in which nothing is reached yet."""
+    count = spans.column.shape[0]
+    return FieldArrays(
+        span,
+        target[0],
+        target[1],
+        np.full(count, np.inf),
+        np.full(count, NONE, np.int64),
+        np.empty(count),
+        np.empty(count),
+        np.full(count, np.inf),
+    )
+
+
+@compiled
+def _choose_turn(spans: Spans, field: FieldArrays, span: int, other: int) -> None:
+    """Where to turn inside a span on the way from `other`: shortest paths touch cell corners."""
+    x, z = _middle(spans, span)
+    field.turn_x[span], field.turn_z[span], field.turn_m[span] = x, z, field.distance_m[span]
+    for side in range(8):
+        if _neighbour(spans.links, span, side) == NONE:
+            break
+    else:
+        return  # amid free floor nothing forces a turn
+    before_span, before, before_m = _turn(field, field.parent[span])
+    best_m = _via(spans, field, span, other)
+    middle_turn = field.turn_x[span], field.turn_z[span], field.turn_m[span]
+    for corner in range(4):
+        to_x = inside(int(x), x + (0.5 if corner % 2 else -0.5))
+        to_z = inside(int(z), z + (0.5 if corner // 2 else -0.5))
+        reached, _, length_m = walk(spans, before_span, before, (to_x, to_z))
+        if reached != span or length_m == np.inf:
+            continue
+        field.turn_x[span], field.turn_z[span] = to_x, to_z
+        field.turn_m[span] = before_m + length_m
+        via_m = _via(spans, field, span, other)
+        if via_m < best_m:
+            best_m = via_m
+            middle_turn = field.turn_x[span], field.turn_z[span], field.turn_m[span]
+    field.turn_x[span], field.turn_z[span], field.turn_m[span] = middle_turn
+
+
+@compiled
+def _via(spans: Spans, field: FieldArrays, span: int, other: int) -> float:
+    """Distance of a neighbour's middle through the turn of a span; inf if it does not see that."""
+    turn = field.turn_x[span], field.turn_z[span]
+    reached, _, length_m = walk(spans, span, turn, _middle(spans, other))
+    return field.turn_m[span] + length_m if reached == other else np.inf
+
+
+@compiled
+def _turn(field: FieldArrays, parent: int) -> tuple[int, Cells, float]:
     """(span, position, distance to the target) of what a parent stands for."""
     if parent == ROOT:
-        return root[0], root[1], 0.0
-    return parent, _middle(spans, parent), distance_m[parent]
+        return field.span, (field.x, field.z), 0.0
+    return parent, (field.turn_x[parent], field.turn_z[parent]), field.turn_m[parent]
 
 
 @compiled
@@ -115,49 +194,36 @@ def _neighbour(links: Int[np.ndarray, "n 4"], span: int, side: int) -> int:
 
 
 @compiled
-def read_field(spans: Spans, root: Place, field: _Field, place: Place) -> tuple[float, int]:
-    """Distance of a point anywhere on the surface, and the corner it walks to first.
-
-    Args:
-        spans: The surface.
-        root: (target span, target position).
-        field: (distances, parents) of `solve_field`.
-        place: (span, position) of the point.
-
-    Returns:
-        (distance in metres, parent as in the field)
-    """
-    distance_m, parent = field
+def read_field(spans: Spans, field: FieldArrays, place: Place) -> tuple[float, int]:
+    """Distance of a point anywhere on the surface, and the parent that it walks to first."""
     span, position = place
     best_m, hung = np.inf, NONE
     for side in range(-1, 8):
         near = span if side < 0 else _neighbour(spans.links, span, side)
-        if near == NONE or distance_m[near] == np.inf:
+        if near == NONE or field.distance_m[near] == np.inf:
             continue
         for own in range(2):
-            candidate = parent[near] if own == 0 else near
-            corner_span, corner, base_m = _corner(spans, candidate, root, distance_m)
-            flat = math.sqrt((corner[0] - position[0]) ** 2 + (corner[1] - position[1]) ** 2)
-            if candidate == hung or base_m + flat * spans.cell_m >= best_m:
+            parent = field.parent[near] if own == 0 else near
+            turn_span, turn, turn_m = _turn(field, parent)
+            if parent == hung or turn_m + _flat_m(spans, turn, position) >= best_m:
                 continue
-            # Walked from the corner, as the field is: lengths agree to the last bit.
-            reached, _, length_m = walk(spans, corner_span, corner, position)
-            if reached == span and base_m + length_m < best_m:
-                best_m, hung = base_m + length_m, candidate
+            # Walked away from the target, as in the field: lengths agree to the last bit.
+            reached, _, length_m = walk(spans, turn_span, turn, position)
+            if reached == span and turn_m + length_m < best_m:
+                best_m, hung = turn_m + length_m, parent
     return best_m, hung
 
 
 @compiled
 def read_many(
-    spans: Spans, root: Place, field: _Field, places: Float[np.ndarray, "n 3"]
+    spans: Spans, field: FieldArrays, places: Float[np.ndarray, "n 3"]
 ) -> Float[np.ndarray, " n"]:
     """`read_field` at many places: rows of (span, x, z); inf where the span is `NONE`."""
     distances_m = np.full(places.shape[0], np.inf)
     for i in range(places.shape[0]):
         span = int(places[i, 0])
         if span != NONE:
-            place = (span, (places[i, 1], places[i, 2]))
-            distances_m[i], _ = read_field(spans, root, field, place)
+            distances_m[i], _ = read_field(spans, field, (span, (places[i, 1], places[i, 2])))
     return distances_m
 
 
@@ -167,20 +233,16 @@ class BuiltDistanceField:
 
     Attributes:
         spans: The layered grid.
-        target: The target's place.
-        cell_distance_m: (n,) distance from the middle of each span's cell.
-        parent: (n,) next corner of each span.
+        field: The solved field.
     """
 
     spans: Spans
-    target: Place
-    cell_distance_m: Float[np.ndarray, " n"]
-    parent: Int[np.ndarray, " n"]
+    field: FieldArrays
 
     @staticmethod
     def to(spans: Spans, target: Place) -> BuiltDistanceField:
         """Prepare the field: one pass over the connected floor."""
-        return BuiltDistanceField(spans, target, *solve_field(spans, target[0], target[1]))
+        return BuiltDistanceField(spans, solve_field(spans, target[0], target[1]))
 
     def distance_m(self, point_m: Point) -> float:
         """Shortest walkable distance from a point; `inf` where there is no way."""
@@ -188,23 +250,19 @@ class BuiltDistanceField:
 
     def distances_m(self, points_m: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, " n"]:
         """The same for many points at once."""
-        return read_many(self.spans, self.target, self._field, places(self.spans, points_m))
+        return read_many(self.spans, self.field, places(self.spans, points_m))
 
     def read(self, start: Place) -> float:
         """Distance from a place in metres."""
-        return float(read_field(self.spans, self.target, self._field, start)[0])
+        return float(read_field(self.spans, self.field, start)[0])
 
     def corners(self, start: Place) -> list[Place]:
         """Corners of the shortest path from a place with a finite distance, both ends included."""
-        _, parent = read_field(self.spans, self.target, self._field, start)
+        field = self.field
+        parent = int(read_field(self.spans, field, start)[1])
         corners = [start]
         while parent != ROOT:
-            column = int(self.spans.column[parent])
-            z, x = divmod(column, self.spans.columns_x)
-            corners.append((int(parent), (x + 0.5, z + 0.5)))
-            parent = self.parent[parent]
-        return [*corners, self.target]
-
-    @property
-    def _field(self) -> _Field:
-        return self.cell_distance_m, self.parent
+            turn = float(field.turn_x[parent]), float(field.turn_z[parent])
+            corners.append((parent, turn))
+            parent = int(field.parent[parent])
+        return [*corners, (int(field.span), (float(field.x), float(field.z)))]

@@ -33,6 +33,7 @@ MIN_ISLAND_M2 = 1.0
 
 _FORMAT = 1
 _FIELDS_KEPT = 8
+_SAME_CELLS = 1e-4
 _BEND_M = 0.02  # a path gets a point where half a metre's rise changes by more
 
 
@@ -144,7 +145,9 @@ class WalkableSurface:
         places = self._field_to(end).corners(start)
         points = [point_of(self.spans, places[0])]
         for here, there in pairwise(places):
-            points += self._profile(here, there)
+            # A corner touches several cells: one point is enough.
+            if math.dist(here[1], there[1]) > _SAME_CELLS or there is places[-1]:
+                points += self._profile(here, there)
         return points
 
     def slide(self, start_m: Point, end_m: Point, *, sliding: bool = True) -> Point:

@@ -103,16 +103,16 @@ def _link(spans: OpenSpans, column: Int[np.ndarray, " n"], limits: tuple[float, 
 def _fits(
     column: Int[np.ndarray, " n"], links: _Links, body: tuple[int, float]
 ) -> Bool[np.ndarray, " n"]:
-    """Which spans keep the body's radius, in cells, between their middle and every edge."""
+    """Which spans keep the body's radius, in cells, between all of their cell and every edge."""
     columns_x, radius = body
-    reach = int(np.ceil(radius + 0.5))
+    reach = int(np.ceil(radius)) + 1
     width = 2 * reach + 1
     # Cells whose nearest point is closer than the radius must all be floor.
     disc = np.zeros((width, width), np.bool_)
     for i in range(width):
         for j in range(width):
-            gap_x = max(abs(i - reach) - 0.5, 0.0)
-            gap_z = max(abs(j - reach) - 0.5, 0.0)
+            gap_x = max(abs(i - reach) - 1.0, 0.0)
+            gap_z = max(abs(j - reach) - 1.0, 0.0)
             disc[i, j] = np.sqrt(gap_x**2 + gap_z**2) < radius - 1e-9
     disc[reach, reach] = True
     wanted = disc.sum()

@@ -21,6 +21,8 @@ _Pieces = Float[np.ndarray, "_ 3"]
 _Polygon = Float[np.ndarray, "_ 3"]
 
 _MAX_COLUMNS = 60_000_000
+_TOUCH = 1e-5  # cells; a polygon that reaches less far into a cell only touches it
+_INWARDS = 1e-4  # cells
 _CORNERS = 12  # a triangle cut by four lines has at most seven corners
 
 
@@ -104,16 +106,18 @@ def _rasterize(
     cell = np.empty((_CORNERS, 3))
     for index in range(triangles.shape[0]):
         for corner in range(3):
-            polygon[corner] = cells[triangles[index, corner]]
+            _copy(cells, triangles[index, corner], polygon, corner)
+        if not _shift_inwards(polygon):
+            continue
         plane = _plane(polygon, upright)
         corners = 3
-        first_z, last_z = _range(polygon, corners, 2)
+        first_z, last_z = _cells(polygon, corners, 2)
         for z in range(first_z, last_z + 1):
             in_row, corners = _split((polygon, corners), (2, z + 1.0), (row, rest))
             polygon, rest = rest, polygon
             if in_row < 3:
                 continue
-            first_x, last_x = _range(row, in_row, 0)
+            first_x, last_x = _cells(row, in_row, 0)
             for x in range(first_x, last_x + 1):
                 in_cell, in_row = _split((row, in_row), (0, x + 1.0), (cell, rest))
                 row, rest = rest, row
@@ -121,7 +125,7 @@ def _rasterize(
                     continue
                 column = z * columns_x + x
                 if pieces.shape[0] > 0:
-                    lowest, highest = cell[:in_cell, 1].min(), cell[:in_cell, 1].max()
+                    lowest, highest = _extent(cell, in_cell, 1)
                     middle = plane[0] + plane[1] * (x + 0.5) + plane[2] * (z + 0.5)
                     if middle > -np.inf:
                         middle = min(max(middle, lowest), highest)
@@ -132,25 +136,62 @@ def _rasterize(
 
 
 @compiled
+def _shift_inwards(polygon: _Polygon) -> bool:
+    """Move a triangle a hair against its normal, in plan; False if it has no area.
+
+    A wall that lies exactly on a grid line then blocks the cells of its own side. Where the
+    winding is wrong it blocks those of the other side instead: one cell more, never a gap.
+    """
+    nx, ny, nz = _normal(polygon)
+    for corner in range(3):
+        polygon[corner, 0] -= _INWARDS * np.sign(nx)
+        polygon[corner, 2] -= _INWARDS * np.sign(nz)
+    return nx != 0.0 or ny != 0.0 or nz != 0.0
+
+
+@compiled
+def _normal(polygon: _Polygon) -> tuple[float, float, float]:
+    """Normal of a triangle, twice its area long."""
+    x, y, z = polygon[0, 0], polygon[0, 1], polygon[0, 2]
+    ux, uy, uz = polygon[1, 0] - x, polygon[1, 1] - y, polygon[1, 2] - z
+    vx, vy, vz = polygon[2, 0] - x, polygon[2, 1] - y, polygon[2, 2] - z
+    return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+
+
+@compiled
 def _plane(polygon: _Polygon, upright: float) -> tuple[float, float, float]:
     """Height = a + b·x + c·z of a triangle's plane; a is −inf where it is too steep to carry."""
-    u, v = polygon[1] - polygon[0], polygon[2] - polygon[0]
-    nx = u[1] * v[2] - u[2] * v[1]
-    ny = u[2] * v[0] - u[0] * v[2]
-    nz = u[0] * v[1] - u[1] * v[0]
+    nx, ny, nz = _normal(polygon)
     norm = math.sqrt(nx * nx + ny * ny + nz * nz)
     # Either side of a sheet carries: many meshes wind their floors the wrong way round.
-    if norm == 0.0 or abs(ny) < upright * norm:
+    if abs(ny) < upright * norm:
         return -np.inf, 0.0, 0.0
     b, c = -nx / ny, -nz / ny
     return polygon[0, 1] - b * polygon[0, 0] - c * polygon[0, 2], b, c
 
 
 @compiled
-def _range(polygon: _Polygon, corners: int, axis: int) -> tuple[int, int]:
-    """First and last cell along an axis that a polygon touches."""
-    values = polygon[:corners, axis]
-    return int(np.floor(values.min())), int(np.floor(values.max()))
+def _extent(polygon: _Polygon, corners: int, axis: int) -> tuple[float, float]:
+    """Smallest and largest coordinate of a polygon along an axis."""
+    low, high = polygon[0, axis], polygon[0, axis]
+    for i in range(1, corners):
+        low, high = min(low, polygon[i, axis]), max(high, polygon[i, axis])
+    return low, high
+
+
+@compiled
+def _cells(polygon: _Polygon, corners: int, axis: int) -> tuple[int, int]:
+    """First and last cell along an axis that a polygon reaches into."""
+    low, high = _extent(polygon, corners, axis)
+    first = int(low + _TOUCH)
+    return first, max(first, int(high - _TOUCH))
+
+
+@compiled
+def _copy(source: _Polygon, index: int, target: _Polygon, at: int) -> None:
+    """One corner; spelt out because array expressions take seconds to compile."""
+    for axis in range(3):
+        target[at, axis] = source[index, axis]
 
 
 @compiled
@@ -167,15 +208,17 @@ def _split(
         j = (i + 1) % corners
         here, there = value - points[i, axis], value - points[j, axis]
         if here >= 0.0:
-            below[in_below] = points[i]
+            _copy(points, i, below, in_below)
             in_below += 1
         if here <= 0.0:
-            above[in_above] = points[i]
+            _copy(points, i, above, in_above)
             in_above += 1
         if here * there < 0.0:
-            below[in_below] = points[i] + here / (here - there) * (points[j] - points[i])
+            share = here / (here - there)
+            for k in range(3):
+                below[in_below, k] = points[i, k] + share * (points[j, k] - points[i, k])
             below[in_below, axis] = value
-            above[in_above] = below[in_below]
+            _copy(below, in_below, above, in_above)
             in_below += 1
             in_above += 1
     return in_below, in_above

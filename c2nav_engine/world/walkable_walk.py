@@ -177,6 +177,9 @@ def places_of(
         span, x, z = span_at(spans, point, tolerance_m), point[0], point[2]
         if span == NONE:
             span, x, z = nearest(spans, point, half)
+        else:
+            column_x, column_z = column_of(spans, span)
+            x, z = inside(column_x, x), inside(column_z, z)
         places[i, 0], places[i, 1], places[i, 2] = span, x, z
     return places
 
@@ -204,6 +207,8 @@ def slide_along(spans: Spans, span: int, start: Cells, end: Cells) -> tuple[int,
         taken += 1
         column_x, column_z = column_of(spans, here)
         x, z = inside(column_x, end[0]), inside(column_z, end[1])
+        if (x - middle_x) ** 2 + (z - middle_z) ** 2 > radius * radius:
+            x, z = inside(column_x, middle_x), inside(column_z, middle_z)
         gap = (x - end[0]) ** 2 + (z - end[1]) ** 2
         if gap < smallest:
             best, best_x, best_z, smallest = here, x, z, gap
