@@ -46,8 +46,12 @@ def check_adapter(adapter: Adapter, question: Question) -> None:
 
 
 def check_reply(prompt: Prompt, reply: Reply) -> None:
-    """A reply is text or a finished outcome, with sane facts, and reads as a lawful outcome."""
-    _demand(reply.outcome is None or not reply.text, "text or an outcome, not both", reply)
+    """A reply is text or a finished outcome, with sane facts, and reads as a lawful outcome.
+
+    A refusal or a cut-off answer may keep its words for the record; a selection may not.
+    """
+    selects = isinstance(reply.outcome, Ordering | Tie | Cardinal)
+    _demand(not (selects and reply.text), "text or a selection, not both", reply)
     facts = (reply.latency_s, reply.tokens_in, reply.tokens_out, reply.cost_usd)
     _demand(all(fact is None or fact >= 0 for fact in facts), "facts of zero or more", facts)
     check_outcome(prompt, read(prompt, reply))

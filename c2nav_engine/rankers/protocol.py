@@ -38,6 +38,15 @@ class BatchAdapter(Protocol):
 
 
 @runtime_checkable
+class Startable(Protocol):
+    """An adapter that can try itself out before the first question."""
+
+    def start(self) -> tuple[str, ...]:
+        """Warnings; raises `RankerStopped` when no query makes sense."""
+        ...
+
+
+@runtime_checkable
 class Closable(Protocol):
     """An adapter that holds connections or a model."""
 

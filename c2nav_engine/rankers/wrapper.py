@@ -8,11 +8,12 @@ outcomes are aggregated. The full record of all queries goes back with the outco
 from __future__ import annotations
 
 import itertools
+import logging
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from threading import BoundedSemaphore
+from threading import BoundedSemaphore, Lock
 
 from c2nav_engine.contract.aggregate import aggregate
 from c2nav_engine.contract.outcome import (
@@ -29,12 +30,15 @@ from c2nav_engine.contract.question import Question
 from c2nav_engine.contract.render import render
 from c2nav_engine.errors import RankerUnavailable
 from c2nav_engine.rankers.accounting import AskingConfig, Spent
-from c2nav_engine.rankers.protocol import Adapter, BatchAdapter, Closable
+from c2nav_engine.rankers.protocol import Adapter, BatchAdapter, Closable, Startable
 from c2nav_engine.rankers.reading import read
 
 REPAIRABLE = (Invalid, Empty, Truncated, Refused)
 """Answers that a format reminder may mend. A tie or an abstention is well formed: pressing for a
 winner would turn doubt into a choice."""
+
+
+_LOG = logging.getLogger(__name__)
 
 
 class AskingRanker:
@@ -63,6 +67,8 @@ class AskingRanker:
         self._sleep = sleep
         self._privileged = privileged
         self._under_way = BoundedSemaphore(self._config.concurrency)
+        self._starting = Lock()
+        self._warnings: tuple[str, ...] | None = None
         self.spent = Spent()
 
     @property
@@ -77,6 +83,7 @@ class AskingRanker:
             RankerStopped: No further query makes sense, or the budget is used up.
             RankerUnavailable: A transport failure outlived its retries.
         """
+        self.start()
         shown = presentations(question, once=self._adapter.asks_once)
         asked = [render(question, order) for order in range(len(shown))]
         queries: list[Query] = []
@@ -92,6 +99,19 @@ class AskingRanker:
             ]
         outcome = aggregate(question, list(final.values()))
         return Ranked(outcome, tuple(queries), self.name, self._privileged)
+
+    def start(self) -> tuple[str, ...]:
+        """Let the adapter try itself out, once; returns its warnings, which are logged too.
+
+        The first question does this where the caller did not.
+        """
+        with self._starting:
+            if self._warnings is None:
+                adapter = self._adapter
+                self._warnings = adapter.start() if isinstance(adapter, Startable) else ()
+                for warning in self._warnings:
+                    _LOG.warning("%s: %s", self.name, warning)
+            return self._warnings
 
     def close(self) -> None:
         """Release what the adapter holds, if it holds anything."""
