@@ -101,7 +101,7 @@ def _reach(
             return turn_m + length_m, hung
     unseen[other] = hung
     if field.turn_m[span] == np.inf:
-        _choose_turn(field, span, other)
+        _choose_turn(spans, field, span, other)
     return _via(spans, field, span, other), span
 
 
