@@ -6,7 +6,7 @@ habitat `.navmesh`). Both answer in the world frame, in metres.
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -14,6 +14,7 @@ from jaxtyping import Float
 from c2nav_engine.geometry import Point
 
 
+@runtime_checkable
 class DistanceField(Protocol):
     """Geodesic distances to one fixed target, prepared once and asked often."""
 
@@ -26,6 +27,7 @@ class DistanceField(Protocol):
         ...
 
 
+@runtime_checkable
 class Surface(Protocol):
     """The floor a body can stand on."""
 
