@@ -1,0 +1,100 @@
+"""The state as JSON, once per snapshot, and the event stream that sends what changed."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+from collections.abc import AsyncIterator
+from typing import Any
+
+from app.session.snapshot import Snapshot
+from app.session.state_json import state_json
+from app.session.worker import Session
+
+_PULSE_S = 0.03
+"""Changes closer together than this reach a page as one event."""
+
+_HEARTBEAT_S = 15.0
+"""A comment on an idle stream, so that proxies and tunnels keep it open."""
+
+Sections = dict[str, str]
+"""Top-level key → its JSON text."""
+
+
+class Feed:
+    """Serialises snapshots and tells open pages about them."""
+
+    def __init__(self, session: Session) -> None:
+        """Follow a session; `attach` must run on the event loop before any stream is read."""
+        self._session = session
+        self._cached: tuple[tuple[int, int], Sections] | None = None
+        self._changed: set[asyncio.Event] = set()
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._closing = False
+
+    def attach(self) -> None:
+        """Wake the streams from the worker's thread through this loop."""
+        loop = asyncio.get_running_loop()
+        self._loop = loop
+        self._session.subscribe(lambda _: loop.call_soon_threadsafe(self._wake))
+
+    def close(self) -> None:
+        """End all streams."""
+        self._closing = True
+        self._wake()
+
+    def _wake(self) -> None:
+        for event in self._changed:
+            event.set()
+
+    def state(self) -> bytes:
+        """The whole state as one JSON object."""
+        return _object(self._sections()).encode()
+
+    def _sections(self) -> Sections:
+        snapshot = self._session.snapshot
+        key = (snapshot.version, len(self._changed))
+        if self._cached is None or self._cached[0] != key:
+            self._cached = (key, self._serialised(snapshot))
+        return self._cached[1]
+
+    def _serialised(self, snapshot: Snapshot) -> Sections:
+        whole = state_json(snapshot) | {"pages": len(self._changed)}
+        return {name: _text(value) for name, value in whole.items()}
+
+    async def events(self) -> AsyncIterator[str]:
+        """Server-sent events for one page: the whole state first, then changed sections."""
+        changed = asyncio.Event()
+        self._changed.add(changed)
+        self._wake()
+        sent: Sections = {}
+        try:
+            while not self._closing:
+                now = self._sections()
+                fresh = {name: text for name, text in now.items() if sent.get(name) != text}
+                if fresh:
+                    sent = now
+                    yield f"event: state\ndata: {_object(fresh)}\n\n"
+                changed.clear()
+                try:
+                    await asyncio.wait_for(changed.wait(), _HEARTBEAT_S)
+                except TimeoutError:
+                    yield ": still here\n\n"
+                await asyncio.sleep(_PULSE_S)
+        finally:
+            self._changed.discard(changed)
+            self._wake()
+
+
+def _object(sections: Sections) -> str:
+    return "{" + ",".join(f"{json.dumps(name)}:{text}" for name, text in sections.items()) + "}"
+
+
+def _text(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def finite(value: float) -> float | None:
+    """JSON knows neither NaN nor infinity."""
+    return value if math.isfinite(value) else None

@@ -1,0 +1,68 @@
+"""Evaluation side, on demand: the goal with its success radius, and the reference path."""
+
+from __future__ import annotations
+
+import viser
+
+from app.inspector.scene import frames
+from app.inspector.scene.colours import GREEN, GREY
+from app.inspector.scene.layer import Group
+from app.session.snapshot import Snapshot
+
+
+class Goal:
+    """A green disc of the success radius; a dashed reference path."""
+
+    def __init__(self, scene: viser.SceneApi) -> None:
+        """Draw below /goal and /reference."""
+        self._scene = scene
+        self._disc = Group(scene, "/goal")
+        self._path = Group(scene, "/reference")
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Follow the layers' switches."""
+        episode = snapshot.story.header.episode
+        layers = snapshot.view.layers
+        branch = snapshot.branches[0].branch_id
+        goal_on = "goal" in layers and episode.goal_m is not None
+        self._disc.draw(branch if goal_on else None, lambda: self._draw_goal(snapshot))
+        path_on = "reference" in layers and len(episode.reference_path_m) > 1
+        self._path.draw(branch if path_on else None, lambda: self._draw_path(snapshot))
+
+    def _draw_goal(self, snapshot: Snapshot) -> list[viser.SceneNodeHandle]:
+        episode = snapshot.story.header.episode
+        if episode.goal_m is None:
+            return []
+        vertices, faces = frames.disc(episode.goal_radius_m)
+        ring = frames.ring_points(episode.goal_m, episode.goal_radius_m)
+        return [
+            self._scene.add_mesh_simple(
+                "/goal/disc",
+                vertices,
+                faces,
+                color=GREEN,
+                opacity=0.25,
+                side="double",
+                position=frames.raised(episode.goal_m, 0.03),
+                cast_shadow=False,
+                receive_shadow=False,
+            ),
+            self._scene.add_line_segments(
+                "/goal/rim", frames.polyline(ring), GREEN, thickness=3.0, thickness_units="screen"
+            ),
+            self._scene.add_label(
+                "/goal/name",
+                "goal",
+                position=frames.raised(episode.goal_m, 0.1),
+                anchor="center-center",
+            ),
+        ]
+
+    def _draw_path(self, snapshot: Snapshot) -> list[viser.SceneNodeHandle]:
+        path = list(snapshot.story.header.episode.reference_path_m)
+        segments = frames.dashes(path, dash_m=0.3, gap_m=0.2)
+        return [
+            self._scene.add_line_segments(
+                "/reference/path", segments, GREY, thickness=3.0, thickness_units="screen"
+            )
+        ]

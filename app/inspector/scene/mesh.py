@@ -1,0 +1,143 @@
+"""The scene's mesh: ceiling cut, parts sent one by one, cut faces darkened."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import viser
+
+from app.inspector.scene.cutting import CUT_M, cut_below
+from app.inspector.scene.glb import Surface, pack
+from app.inspector.scene.section import Section, section_of
+from app.session.snapshot import Snapshot
+from c2nav_engine.world.scene import Scene
+
+log = logging.getLogger(__name__)
+
+_CHUNK_TRIANGLES = 150_000
+"""Triangles of one message: the page shows parts as they arrive and stays usable meanwhile."""
+
+_STOREY_M = 1.0
+"""The cut follows the body once the floor has changed by more than this."""
+
+
+class Mesh:
+    """Draws below /scene; the nodes are replaced when the storey or the scene changes."""
+
+    def __init__(self, scene: viser.SceneApi, fetch: Callable[[], Scene | None]) -> None:
+        """Remember where the loaded scene is found."""
+        self._scene = scene
+        self._fetch = fetch
+        self._drawn: tuple[int, float] | None = None
+        self._handles: list[viser.SceneNodeHandle] = []
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Send the mesh once it is there, and again on another storey."""
+        mesh = self._fetch()
+        shown = "scene" in snapshot.view.layers
+        for handle in self._handles:
+            if handle.visible != shown:
+                handle.visible = shown
+        floor_m = snapshot.story.track.footsteps[snapshot.here.step].pose.position_m[1]
+        if mesh is None:
+            if self._drawn is not None and self._drawn[0] != snapshot.scene_serial:
+                self._clear()
+            return
+        if self._drawn is not None:
+            serial, drawn_m = self._drawn
+            if serial == snapshot.scene_serial and abs(drawn_m - floor_m) < _STOREY_M:
+                return
+        self._clear()
+        self._drawn = (snapshot.scene_serial, floor_m)
+        self._handles = list(self._send(mesh, floor_m + CUT_M))
+
+    def _clear(self) -> None:
+        for handle in self._handles:
+            handle.remove()
+        self._handles = []
+        self._drawn = None
+
+    def _send(self, mesh: Scene, height_m: float) -> Iterator[viser.SceneNodeHandle]:
+        for index, surfaces in enumerate(chunks(mesh, height_m)):
+            yield self._scene.add_glb(
+                f"/scene/part{index}", pack(surfaces), cast_shadow=False, receive_shadow=False
+            )
+        section = section_of(_groups(mesh), height_m)
+        if section is not None:
+            yield self._send_section(section, height_m)
+
+    def _send_section(self, section: Section, height_m: float) -> viser.SceneNodeHandle:
+        return self._scene.add_image(
+            "/scene/section",
+            section.rgba,
+            section.size_m[0],
+            section.size_m[1],
+            format="png",
+            # viser's picture stands in x and y and looks along −z: lay it on its back.
+            wxyz=(0.7071068, 0.7071068, 0.0, 0.0),
+            position=(section.centre_m[0], height_m + 0.002, section.centre_m[1]),
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+
+def _groups(mesh: Scene) -> list[np.ndarray]:
+    return [mesh.vertices_m[mesh.triangles[part.first : part.stop]] for part in mesh.parts]
+
+
+def chunks(mesh: Scene, height_m: float) -> Iterator[list[Surface]]:
+    """Surfaces below the cut, a few parts at a time, one surface per material and chunk."""
+    waiting: dict[int, list[tuple[int, int]]] = {}
+    count = 0
+    for part in mesh.parts:
+        waiting.setdefault(part.material, []).append((part.first, part.stop))
+        count += part.stop - part.first
+        if count >= _CHUNK_TRIANGLES:
+            yield from _chunk(mesh, waiting, height_m)
+            waiting, count = {}, 0
+    yield from _chunk(mesh, waiting, height_m)
+
+
+def _chunk(
+    mesh: Scene, runs: dict[int, list[tuple[int, int]]], height_m: float
+) -> Iterator[list[Surface]]:
+    surfaces = [
+        surface
+        for material, spans in runs.items()
+        if (surface := _surface(mesh, material, spans, height_m)) is not None
+    ]
+    if surfaces:
+        yield surfaces
+
+
+def _surface(
+    mesh: Scene, material: int, spans: list[tuple[int, int]], height_m: float
+) -> Surface | None:
+    index = np.concatenate([np.arange(first, stop) for first, stop in spans])
+    triangles = mesh.triangles[index]
+    corners_m = mesh.vertices_m[triangles]
+    textured = mesh.uvs is not None and mesh.materials[material].texture is not None
+    extra: list[np.ndarray] = []
+    if textured and mesh.uvs is not None:
+        extra.append(mesh.uvs[index])
+    if mesh.colours is not None:
+        extra.append(mesh.colours[triangles].astype(np.float32))
+    blank = np.zeros((*corners_m.shape[:2], 0), np.float32)
+    soup = cut_below(corners_m, np.concatenate(extra, axis=2) if extra else blank, height_m)
+    if not len(soup.corners_m):
+        return None
+    flat = soup.extra.reshape(3 * len(soup.extra), soup.extra.shape[2])
+    uvs = None
+    if textured:
+        uvs = flat[:, :2] * (1.0, -1.0) + (0.0, 1.0)  # ours from the bottom, glTF's from the top
+        flat = flat[:, 2:]
+    corners = soup.corners_m.reshape(-1, 3)
+    return Surface(
+        positions_m=corners.astype(np.float32),
+        triangles=np.arange(len(corners), dtype=np.uint32).reshape(-1, 3),
+        material=mesh.materials[material],
+        uvs=None if uvs is None else uvs.astype(np.float32),
+        colours=flat.round().clip(0, 255).astype(np.uint8) if mesh.colours is not None else None,
+    )

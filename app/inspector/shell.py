@@ -1,0 +1,156 @@
+"""viser's page as the shell: docks, layers, commands; drawn from snapshots on one thread."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import logging
+import threading
+
+import viser
+
+from app.inspector.palette import add_palette
+from app.inspector.panels import (
+    branches,
+    decision,
+    export,
+    ladder,
+    lookback,
+    review,
+    run,
+    sketch,
+)
+from app.inspector.panels.protocol import Build, Update
+from app.inspector.scene.body import Body
+from app.inspector.scene.cameras import Cameras
+from app.inspector.scene.fan import Fan
+from app.inspector.scene.goal import Goal
+from app.inspector.scene.layer import Layer
+from app.inspector.scene.mesh import Mesh
+from app.inspector.scene.trajectory import Trajectory
+from app.session.snapshot import Snapshot
+from app.session.worker import Session
+
+log = logging.getLogger(__name__)
+
+_BLUE = (0x00, 0x72, 0xB2)
+LEFT_PX = 520
+RIGHT_PX = 300
+
+
+class Shell:
+    """One viser server that shows one session."""
+
+    def __init__(self, session: Session) -> None:
+        """Start viser on a free loopback port, build the docks, follow the session."""
+        self._session = session
+        # viser prints its own address; ours is the gateway's.
+        with contextlib.redirect_stdout(io.StringIO()):
+            self._server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+        self._updates: list[Update] = []
+        self._layers: list[Layer] = []
+        self._cameras = Cameras(self._server)
+        self._changed = threading.Event()
+        self._closing = False
+        self._dress()
+        self._build_docks()
+        self._build_scene()
+        self._stop_following = session.subscribe(lambda _: self._changed.set())
+        self._server.on_client_connect(self._greet)
+        self._changed.set()
+        self._painter = threading.Thread(target=self._paint, name="c2nav-paint", daemon=True)
+        self._painter.start()
+
+    @property
+    def port(self) -> int:
+        """Where viser really listens: it moves silently to a free port."""
+        return self._server.get_port()
+
+    def close(self) -> None:
+        """Stop drawing and close viser."""
+        self._closing = True
+        self._stop_following()
+        self._changed.set()
+        self._painter.join(timeout=5.0)
+        with contextlib.redirect_stdout(io.StringIO()):
+            self._server.stop()
+
+    def _dress(self) -> None:
+        gui, scene = self._server.gui, self._server.scene
+        gui.configure_theme(show_logo=False, show_share_button=False, brand_color=_BLUE)
+        gui.set_panel_label("Scene")
+        scene.set_up_direction("+y")
+        # Software WebGL has no time for reflections or shadows, and a plan needs neither.
+        scene.configure_environment_map(hdri=None)
+        scene.configure_default_lights(enabled=True, cast_shadow=False)
+        scene.world_axes.visible = False
+
+    def _build_docks(self) -> None:
+        gui = self._server.gui
+        left = gui.add_panel()
+        self._fill(
+            left,
+            {
+                "Decision": decision.build,
+                "Look-back": lookback.build,
+                "Sketch": sketch.build,
+                "Ladder": ladder.build,
+            },
+        )
+        left.dock_left()
+        left.set_width(LEFT_PX)
+        right = gui.add_panel()
+        self._fill(
+            right,
+            {
+                "Run": run.build,
+                "Branches": branches.build,
+                "Review": review.build,
+                "Export": export.build,
+            },
+        )
+        right.dock_right()
+        right.set_width(RIGHT_PX)
+        gui.main_panel.float(x=-12, y=-12)
+        gui.main_panel.set_width(200)
+        gui.main_panel.minimize()
+        add_palette(gui, self._session.dispatch)
+
+    def _fill(self, panel: viser.PanelHandle, builders: dict[str, Build]) -> None:
+        for label, build in builders.items():
+            with panel.add_tab(label):
+                self._updates.append(build(self._server.gui, self._session.dispatch))
+
+    def _build_scene(self) -> None:
+        scene = self._server.scene
+        self._layers = [
+            Trajectory(scene),
+            Body(scene),
+            Fan(scene, self._session.dispatch),
+            Goal(scene),
+            self._cameras,
+            Mesh(scene, lambda: self._session.scene),
+        ]
+
+    def _greet(self, client: viser.ClientHandle) -> None:
+        self._cameras.greet(client, self._session.snapshot)
+
+    def _paint(self) -> None:
+        while not self._closing:
+            self._changed.wait()
+            self._changed.clear()
+            if not self._closing:
+                self._draw(self._session.snapshot)
+
+    def _draw(self, snapshot: Snapshot) -> None:
+        for update in self._updates:
+            self._guarded(update, snapshot)
+        for layer in self._layers:
+            self._guarded(layer.update, snapshot)
+
+    def _guarded(self, update: Update, snapshot: Snapshot) -> None:
+        """One broken panel must not stop the others."""
+        try:
+            update(snapshot)
+        except Exception:
+            log.exception("a part of the page could not be drawn")

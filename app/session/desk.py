@@ -1,0 +1,200 @@
+"""The session's truth: branches, runs and the snapshot that is being made.
+
+Only the worker's thread touches a desk. What may take long goes to `background` and comes back as
+a message.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from app.session.branches import Branch, Origin
+from app.session.draft import Draft
+from app.session.judging import Bench
+from app.session.opened import Choice, Opened, Opening, Run
+from app.session.pictures import Album
+from app.session.snapshot import Chooser, Notice, Snapshot
+from app.session.story import Story, story_of
+from c2nav_engine.errors import C2NavError
+from c2nav_engine.navigator.requests import Ask
+from c2nav_engine.world.scene import Scene
+
+log = logging.getLogger(__name__)
+
+Message = Callable[["Desk"], None]
+"""What comes back from the background: applied on the worker's thread."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hands:
+    """What a desk may use of the world around it.
+
+    Attributes:
+        background: Runs a task on another thread and applies the message it returns.
+        clock: Wall clock, seconds since the epoch.
+    """
+
+    background: Callable[[Callable[[], Message]], None]
+    clock: Callable[[], float]
+
+
+class Desk:
+    """Branches, runs, stories, and the snapshot under construction."""
+
+    def __init__(self, opened: Opened, album: Album, hands: Hands) -> None:
+        """Open the source's first choice; raises `C2NavError` when that cannot be done."""
+        self.opened = opened
+        self.album = album
+        self.hands = hands
+        self.bench = Bench()
+        self.branches: dict[str, Branch] = {}
+        self.stories: dict[str, Story] = {}
+        self.runs: dict[str, Run] = {}
+        self.asked: set[str] = set()
+        self.scene: Scene | None = None
+        self.allowed = not opened.sends_to
+        self.commit_when_answered = False
+        self.due_s = 0.0
+        self._generation = 0
+        self._branch_serial = 0
+        self.snapshot = self._open(opened.first)
+
+    @property
+    def generation(self) -> int:
+        """Counts the openings, so that late messages of an earlier one are dropped."""
+        return self._generation
+
+    def change(self, **fields: Any) -> None:
+        """Replace fields of the snapshot."""
+        self.snapshot = replace(self.snapshot, **fields)
+
+    def say(self, text: str, *, fault: bool = False) -> None:
+        """Tell the person something once."""
+        self.change(notice=Notice(text, fault, self.snapshot.notice.serial + 1))
+
+    def reopen(self, choice: Choice) -> None:
+        """Open another entry, variant or ranker in place of what is open."""
+        for run in self.runs.values():
+            run.close()
+        self.runs.clear()
+        kept = self.snapshot
+        fresh = self._open(choice)
+        self.snapshot = replace(fresh, version=kept.version, view=kept.view, who=kept.who)
+
+    def _open(self, choice: Choice) -> Snapshot:
+        opening = self.opened.open(choice)
+        self._generation += 1
+        self.branches.clear()
+        self.stories.clear()
+        self.album.clear()
+        self.asked.clear()
+        self.scene = None
+        self.commit_when_answered = False
+        self.bench = Bench(opening.trace_sha256)
+        branch = self._root(opening)
+        if opening.run is not None:
+            self.runs[branch.branch_id] = opening.run
+        self._read(branch)
+        if opening.scene is not None:
+            self._fetch(opening.scene)
+        return Snapshot(
+            version=0,
+            chooser=Chooser(
+                self.opened.title,
+                self.opened.entries,
+                choice,
+                variants=self.opened.variants,
+                rankers=self.opened.rankers,
+            ),
+            branches=(branch,),
+            branch=branch,
+            story=self.stories[branch.branch_id],
+            stop=0,
+            no_scene=opening.no_scene,
+        )
+
+    def _root(self, opening: Opening) -> Branch:
+        run = opening.run
+        return Branch(
+            branch_id=self.new_branch_id(),
+            origin=Origin.RECORDED if run is None else Origin.LIVE,
+            header=opening.header,
+            exchanges=tuple(opening.exchanges if run is None else run.exchanges),
+            pending=None if run is None else run.pending,
+            footer=opening.footer if run is None else run.footer,
+            trace_sha256=opening.trace_sha256,
+            source=opening.source,
+        )
+
+    def new_branch_id(self) -> str:
+        """A name that no branch of this session had."""
+        self._branch_serial += 1
+        return f"b{self._branch_serial - 1}"
+
+    def _fetch(self, load: Callable[[], Scene]) -> None:
+        generation = self._generation
+
+        def task() -> Message:
+            try:
+                scene = load()
+            except C2NavError as error:
+                problem = str(error)
+                return lambda desk: desk.take_scene(generation, None, problem)
+            return lambda desk: desk.take_scene(generation, scene, "")
+
+        self.hands.background(task)
+
+    def take_scene(self, generation: int, scene: Scene | None, problem: str) -> None:
+        """The scene came, or could not be loaded."""
+        if generation != self._generation:
+            return
+        self.scene = scene
+        self.change(no_scene=problem, scene_serial=self.snapshot.scene_serial + 1)
+
+    # ------------------------------------------------------------ branches
+
+    def _read(self, branch: Branch) -> None:
+        self.branches[branch.branch_id] = branch
+        self.album.take(branch.branch_id, branch.exchanges, branch.pending)
+        self.stories[branch.branch_id] = story_of(
+            branch.header, branch.exchanges, pending=branch.pending, footer=branch.footer
+        )
+
+    def put(self, branch: Branch) -> None:
+        """Add a branch or replace an older state of it."""
+        self._read(branch)
+        fields: dict[str, Any] = {"branches": tuple(self.branches.values())}
+        if self.snapshot.branch.branch_id == branch.branch_id:
+            story = self.stories[branch.branch_id]
+            fields |= {"branch": branch, "story": story, "parent": self.stories.get(branch.parent)}
+            fields["stop"] = min(self.snapshot.stop, len(story.stops) - 1)
+        self.change(**fields)
+
+    def stand(self, stop: int, branch_id: str = "") -> None:
+        """Stand at a stop of a branch; an unfinished ranking of another decision is dropped."""
+        branch = self.branches[branch_id or self.snapshot.branch.branch_id]
+        story = self.stories[branch.branch_id]
+        stop = max(0, min(stop, len(story.stops) - 1))
+        before = self.snapshot
+        self.change(branch=branch, story=story, stop=stop, parent=self.stories.get(branch.parent))
+        if self.snapshot.token != before.token:
+            self.change(draft=Draft(), offer=None)
+
+    @property
+    def at_frontier(self) -> bool:
+        """Whether the decision in view is the one that waits for an answer."""
+        decision = self.snapshot.decision
+        return decision is not None and decision.pending
+
+    @property
+    def run(self) -> Run | None:
+        """The live episode of the branch in view."""
+        return self.runs.get(self.snapshot.branch.branch_id)
+
+    def waiting(self, branch_id: str) -> Ask | None:
+        """The question a branch waits for."""
+        pending = self.branches[branch_id].pending
+        return pending if isinstance(pending, Ask) else None

@@ -1,0 +1,242 @@
+"""Driving the engine: go on to the next question, put it to the ranker, commit, fork."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.session.branches import Branch, Origin, fork_estimate, median_query_s
+from app.session.desk import Desk, Message
+from app.session.draft import Draft, outcome_of
+from app.session.opened import Run
+from app.session.snapshot import Asking, ForkOffer
+from c2nav_engine.contract.prompt import Ranked
+from c2nav_engine.contract.question import Orders, Question
+from c2nav_engine.errors import C2NavError, UsageError
+from c2nav_engine.navigator.requests import Ask
+from c2nav_engine.runner.exchange import Override
+
+HUMAN = "human"
+"""A run whose ranker is the person at the page: nothing is ever proposed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Errand:
+    """A question on its way: late answers are told by it."""
+
+    generation: int
+    branch_id: str
+    decision: int
+
+
+def settle(desk: Desk, branch_id: str) -> None:
+    """Let the core look, move and note until it asks or ends, then ask the ranker."""
+    run = desk.runs.get(branch_id)
+    if run is None:
+        return
+    try:
+        while run.pending is not None and not isinstance(run.pending, Ask):
+            run.advance()
+    except C2NavError as error:
+        desk.say(str(error), fault=True)
+    refresh(desk, branch_id)
+    ask(desk, branch_id)
+
+
+def refresh(desk: Desk, branch_id: str) -> None:
+    """Read what a run has done since."""
+    run = desk.runs[branch_id]
+    old = desk.branches[branch_id]
+    desk.put(
+        Branch(
+            branch_id,
+            old.origin,
+            old.header,
+            tuple(run.exchanges),
+            pending=run.pending,
+            footer=run.footer,
+            parent=old.parent,
+            fork_decision=old.fork_decision,
+        )
+    )
+
+
+def ask(desk: Desk, branch_id: str) -> None:
+    """Put the pending question to the ranker, on a thread of its own."""
+    run, waiting = desk.runs.get(branch_id), desk.waiting(branch_id)
+    if run is None or waiting is None or desk.snapshot.asking or branch_id in desk.asked:
+        return
+    if run.header.ranker == HUMAN:
+        return
+    if not desk.allowed:
+        desk.change(consent_to=desk.opened.sends_to)
+        return
+    number = desk.stories[branch_id].decisions[-1].number
+    desk.asked.add(branch_id)
+    desk.change(
+        asking=Asking(
+            decision=number,
+            since_s=desk.hands.clock(),
+            queries=_expected(waiting.question),
+            median_s=median_query_s(desk.stories[branch_id].decisions),
+        )
+    )
+    errand = Errand(desk.generation, branch_id, number)
+
+    def task() -> Message:
+        try:
+            ranked = run.propose()
+        except C2NavError as error:
+            problem = str(error)
+            return lambda desk: failed(desk, errand, problem)
+        return lambda desk: answered(desk, errand, ranked)
+
+    desk.hands.background(task)
+
+
+def _expected(question: Question) -> int:
+    return {Orders.ONCE: 1, Orders.BOTH: 2, Orders.CYCLIC: len(question.alternatives)}[
+        question.orders
+    ]
+
+
+def failed(desk: Desk, errand: Errand, problem: str) -> None:
+    """The ranker cannot go on: a person may answer, or ask again."""
+    if errand.generation != desk.generation:
+        return
+    desk.change(asking=None, playing="")
+    desk.commit_when_answered = False
+    desk.asked.discard(errand.branch_id)
+    desk.say(problem, fault=True)
+
+
+def answered(desk: Desk, errand: Errand, ranked: Ranked) -> None:
+    """The ranker's answer came."""
+    if errand.generation != desk.generation:
+        return
+    branch_id = errand.branch_id
+    desk.asked.discard(branch_id)
+    desk.change(asking=None)
+    pending = desk.stories[branch_id].pending
+    if pending is None or pending.number != errand.decision:
+        return
+    desk.change(proposals={**desk.snapshot.proposals, branch_id: ranked})
+    if desk.commit_when_answered:
+        desk.commit_when_answered = False
+        commit_proposal(desk, branch_id)
+
+
+def commit_proposal(desk: Desk, branch_id: str) -> None:
+    """Commit what the ranker proposes, or do so as soon as it answers."""
+    if branch_id not in desk.snapshot.proposals:
+        desk.commit_when_answered = branch_id in desk.asked
+        if not desk.commit_when_answered:
+            desk.say("This decision waits for your ranking")
+        return
+    commit(desk, branch_id, None)
+
+
+def commit(desk: Desk, branch_id: str, override: Override | None) -> None:
+    """Commit at the newest decision and go on to the next one."""
+    run = desk.runs[branch_id]
+    try:
+        run.commit(override)
+    except C2NavError as error:
+        desk.say(str(error), fault=True)
+        return
+    proposals = dict(desk.snapshot.proposals)
+    proposals.pop(branch_id, None)
+    desk.change(proposals=proposals, draft=Draft(), offer=None)
+    settle(desk, branch_id)
+    if desk.snapshot.branch.branch_id == branch_id:
+        desk.stand(len(desk.snapshot.story.stops) - 1)
+
+
+def override_of(desk: Desk, why: str) -> Override:
+    """The person's ranking of the decision in view."""
+    decision = desk.snapshot.decision
+    offered = tuple(candidate.key for candidate in decision.offered) if decision else ()
+    outcome = outcome_of(desk.snapshot.draft, offered)
+    return Override(outcome, desk.snapshot.who, why, desk.hands.clock())
+
+
+def offer_fork(desk: Desk) -> None:
+    """Say what a fork at the decision in view would take, and wait for a yes."""
+    decision = desk.snapshot.decision
+    if decision is None:
+        return
+    if desk.opened.fork is None:
+        desk.say(
+            "Forking drives the robot again, so it needs the scene: open with --scenes DIR",
+            fault=True,
+        )
+        return
+    cost = fork_estimate(desk.snapshot.story.decisions, decision.number)
+    desk.change(
+        offer=ForkOffer(decision.number, cost.decisions, cost.queries, cost.seconds, cost.dollars)
+    )
+
+
+def fork(desk: Desk, why: str) -> None:
+    """Start a branch with the person's answer at the decision in view."""
+    decision, parent = desk.snapshot.decision, desk.snapshot.branch
+    start = desk.opened.fork
+    if decision is None or start is None:
+        return
+    override = override_of(desk, why)
+    generation = desk.generation
+    desk.change(offer=None, draft=Draft(), working=f"forking at decision {decision.number}")
+
+    def task() -> Message:
+        try:
+            run = start(parent.header, parent.exchanges, decision.number, override)
+        except C2NavError as error:
+            problem = str(error)
+            return lambda desk: not_forked(desk, problem)
+        return lambda desk: forked(desk, generation, (parent.branch_id, decision.number), run)
+
+    desk.hands.background(task)
+
+
+def not_forked(desk: Desk, problem: str) -> None:
+    """The fork could not be made."""
+    desk.change(working="")
+    desk.say(problem, fault=True)
+
+
+def forked(desk: Desk, generation: int, origin: tuple[str, int], run: Run) -> None:
+    """A fork stands at its first new request."""
+    if generation != desk.generation:
+        run.close()
+        return
+    desk.change(working="")
+    branch_id = desk.new_branch_id()
+    desk.runs[branch_id] = run
+    parent, decision = origin
+    desk.put(
+        Branch(
+            branch_id,
+            Origin.FORK,
+            run.header,
+            tuple(run.exchanges),
+            pending=run.pending,
+            footer=run.footer,
+            parent=parent,
+            fork_decision=decision,
+        )
+    )
+    settle(desk, branch_id)
+    desk.stand(desk.stories[branch_id].stop_of_decision(decision + 1), branch_id)
+
+
+def cancel(desk: Desk) -> None:
+    """Stop waiting: a person may answer; the late answer is still recorded if it comes first."""
+    desk.change(asking=None, playing="")
+    desk.commit_when_answered = False
+
+
+def check_can_answer(desk: Desk) -> None:
+    """Raise `UsageError` where the decision in view has nothing to rank."""
+    decision = desk.snapshot.decision
+    if decision is None or not decision.offered or decision.question is None:
+        message = "expected a decision that was put as a question; this one needed none"
+        raise UsageError(message)

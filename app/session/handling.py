@@ -1,0 +1,174 @@
+"""One small function for each command."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from app.session import commands as c
+from app.session import driving, judging, moving
+from app.session.desk import Desk
+from app.session.draft import Draft, arranged, none_of_these, press, take_back, tie
+from app.session.opened import Choice
+
+Handler = Callable[[Desk, Any], None]
+
+
+def handle(desk: Desk, command: c.Command) -> None:
+    """Do what a command says."""
+    _HANDLERS[type(command)](desk, command)
+    if command.tab and command.tab != desk.snapshot.driver:
+        desk.change(driver=command.tab)
+
+
+def _move(desk: Desk, command: c.Move) -> None:
+    desk.change(playing="")
+    moving.by_decision(desk, command.count) if command.by == "decision" else moving.by_step(
+        desk, command.count
+    )
+
+
+def _go(desk: Desk, command: c.Go) -> None:
+    desk.change(playing="")
+    moving.go(desk, command.branch, command.decision, command.step)
+
+
+def _open(desk: Desk, command: c.Open) -> None:
+    now = desk.snapshot.chooser.choice
+    desk.reopen(
+        Choice(
+            command.entry or now.entry_id,
+            command.variant or now.variant,
+            command.ranker or now.ranker,
+        )
+    )
+    driving.settle(desk, desk.snapshot.branch.branch_id)
+
+
+def _press(desk: Desk, command: c.Press) -> None:
+    driving.check_can_answer(desk)
+    decision = desk.snapshot.decision
+    letters = decision.letters if decision else {}
+    by_position = sorted(letters, key=lambda key: letters[key])
+    key = command.key
+    if not key and 0 <= command.position < len(by_position):
+        key = by_position[command.position]
+    if decision is not None and key in {candidate.key for candidate in decision.offered}:
+        desk.change(draft=press(desk.snapshot.draft, key), playing="")
+
+
+def _arrange(desk: Desk, command: c.Arrange) -> None:
+    driving.check_can_answer(desk)
+    decision = desk.snapshot.decision
+    offered = {candidate.key for candidate in decision.offered} if decision else set[str]()
+    tiers = tuple(tuple(key for key in tier if key in offered) for tier in command.tiers)
+    desk.change(draft=arranged(tiers), playing="")
+
+
+def _drafted(change: Callable[[Draft], Draft]) -> Handler:
+    def handler(desk: Desk, _: c.Command) -> None:
+        driving.check_can_answer(desk)
+        desk.change(draft=change(desk.snapshot.draft), playing="")
+
+    return handler
+
+
+def _clear(desk: Desk, _: c.Clear) -> None:
+    desk.change(draft=Draft(), offer=None)
+
+
+def _commit(desk: Desk, command: c.Commit) -> None:
+    branch_id = desk.snapshot.branch.branch_id
+    if desk.at_frontier and desk.run is not None:
+        if desk.snapshot.draft.empty:
+            driving.commit_proposal(desk, branch_id)
+        elif branch_id in desk.asked:
+            desk.say("The model still holds this question; your ranking waits for it")
+        else:
+            driving.commit(desk, branch_id, driving.override_of(desk, command.why))
+    elif desk.snapshot.draft.empty:
+        moving.by_decision(desk, 1)
+    elif desk.snapshot.offer is None:
+        driving.offer_fork(desk)
+    else:
+        driving.fork(desk, command.why)
+
+
+def _consent(desk: Desk, command: c.Consent) -> None:
+    desk.allowed = command.allow
+    desk.change(consent_to="")
+    if command.allow:
+        driving.ask(desk, desk.snapshot.branch.branch_id)
+
+
+def _layer(desk: Desk, command: c.Layer) -> None:
+    layers = desk.snapshot.view.layers
+    layers = layers | {command.name} if command.on else layers - {command.name}
+    desk.change(view=replace(desk.snapshot.view, layers=layers))
+
+
+def _judged(change: Callable[[Any], judging.Change]) -> Handler:
+    def handler(desk: Desk, command: c.Command) -> None:
+        decision = desk.snapshot.decision
+        if decision is not None:
+            desk.bench.judge(decision.number, change(command))
+            desk.change(judgements=desk.bench.judgements())
+
+    return handler
+
+
+def _undo(desk: Desk, _: c.Undo) -> None:
+    _after_undo(desk, desk.bench.undo(), "Nothing to undo")
+
+
+def _redo(desk: Desk, _: c.Redo) -> None:
+    _after_undo(desk, desk.bench.redo(), "Nothing to redo")
+
+
+def _after_undo(desk: Desk, decision: int | None, otherwise: str) -> None:
+    if decision is None:
+        desk.say(otherwise)
+        return
+    desk.change(judgements=desk.bench.judgements())
+    desk.stand(desk.snapshot.story.stop_of_decision(decision))
+
+
+def _view(**of: Callable[[Any], Any]) -> Handler:
+    def handler(desk: Desk, command: c.Command) -> None:
+        fields = {name: read(command) for name, read in of.items()}
+        desk.change(view=replace(desk.snapshot.view, **fields))
+
+    return handler
+
+
+_HANDLERS: dict[type[c.Command], Handler] = {
+    c.Step: lambda desk, _: moving.step(desk),
+    c.Move: _move,
+    c.Go: _go,
+    c.Play: lambda desk, _: moving.play(desk, "play"),
+    c.Pause: lambda desk, _: desk.change(playing=""),
+    c.RunTo: lambda desk, command: moving.play(desk, command.until),
+    c.Open: _open,
+    c.Jump: lambda desk, command: moving.jump(desk, command.to),
+    c.Press: _press,
+    c.Arrange: _arrange,
+    c.Tie: _drafted(tie),
+    c.NoneOfThese: _drafted(lambda _: none_of_these()),
+    c.TakeBack: _drafted(take_back),
+    c.Clear: _clear,
+    c.Commit: _commit,
+    c.Cancel: lambda desk, _: driving.cancel(desk),
+    c.AskAgain: lambda desk, _: driving.ask(desk, desk.snapshot.branch.branch_id),
+    c.Consent: _consent,
+    c.Hover: _view(hovered=lambda command: command.key),
+    c.Camera: _view(camera=lambda command: command.mode),
+    c.Layer: _layer,
+    c.Verdict: _judged(lambda command: judging.verdict(command.value)),
+    c.Tag: _judged(lambda command: judging.tag(command.value)),
+    c.Flag: _judged(lambda _: judging.flag()),
+    c.Remark: _judged(lambda command: judging.remark(command.text)),
+    c.Undo: _undo,
+    c.Redo: _redo,
+    c.Name: lambda desk, command: desk.change(who=command.who or "person 1"),
+}

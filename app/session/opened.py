@@ -1,0 +1,135 @@
+"""What an inspector is opened on: entries to choose from, and how one of them is started."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from c2nav_engine.contract.prompt import Ranked
+from c2nav_engine.navigator.requests import Request
+from c2nav_engine.runner.exchange import Exchange, Override
+from c2nav_engine.runner.record import Footer, Header
+from c2nav_engine.world.scene import Scene
+
+
+class Run(Protocol):
+    """A live episode that the session drives: `c2nav_engine.runner.episode_run.EpisodeRun`."""
+
+    @property
+    def header(self) -> Header:
+        """What was known before the first request."""
+        ...
+
+    @property
+    def exchanges(self) -> list[Exchange]:
+        """Everything so far."""
+        ...
+
+    @property
+    def pending(self) -> Request | None:
+        """What the core waits for; None when the episode is over."""
+        ...
+
+    @property
+    def footer(self) -> Footer | None:
+        """How it ended."""
+        ...
+
+    def advance(self) -> Exchange:
+        """Answer the pending request, asking the ranker where it is a question."""
+        ...
+
+    def propose(self) -> Ranked:
+        """What the ranker says to the pending question, without committing it."""
+        ...
+
+    def commit(self, override: Override | None = None) -> Exchange:
+        """Commit the proposal, or a person's answer in its place."""
+        ...
+
+    def close(self) -> None:
+        """Let go of what it holds."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One thing that can be opened: an episode of a dataset, or a trace.
+
+    Attributes:
+        entry_id: Stable name.
+        label: What a list calls it.
+        outcome: How it ended, for a recorded one; "" otherwise.
+        thumbnail: Digest of a picture, if one is known; "" otherwise.
+    """
+
+    entry_id: str
+    label: str
+    outcome: str = ""
+    thumbnail: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What is open, or wanted: an entry, and for a live one the variant and ranker."""
+
+    entry_id: str
+    variant: str = ""
+    ranker: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """One entry, opened.
+
+    Attributes:
+        header: What was known before the first request.
+        exchanges: What is recorded already; empty for a live one.
+        footer: How the recording ended; None for a live one.
+        run: The live episode; None for a recording.
+        trace_sha256: Digest of the recording.
+        source: File name of the recording.
+        scene: Loads the scene for display; None where it is not to be had.
+        no_scene: Why there is no scene, and what to do about it.
+    """
+
+    header: Header
+    exchanges: Sequence[Exchange] = ()
+    footer: Footer | None = None
+    run: Run | None = None
+    trace_sha256: str = ""
+    source: str = ""
+    scene: Callable[[], Scene] | None = None
+    no_scene: str = ""
+
+
+ForkAt = Callable[[Header, Sequence[Exchange], int, Override], Run]
+"""Header and exchanges of the parent, the decision, and the new answer there → a live episode."""
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """A source that the inspector shows.
+
+    Attributes:
+        title: Dataset or folder name.
+        entries: What can be chosen.
+        first: What is open at the start.
+        open: Starts a choice; raises `C2NavError` with words for a person.
+        fork: Starts a fork; None where forks cannot be made.
+        variants: Names to choose from; empty for recordings.
+        rankers: Names to choose from; empty for recordings.
+        sends_to: Host outside this machine that pictures would go to; "" for none.
+        goal_distance: Header → geodesic distance to the goal, for suspects.
+    """
+
+    title: str
+    entries: tuple[Entry, ...]
+    first: Choice
+    open: Callable[[Choice], Opening]
+    fork: ForkAt | None = None
+    variants: tuple[str, ...] = ()
+    rankers: tuple[str, ...] = ()
+    sends_to: str = ""
+    extra: dict[str, str] = field(default_factory=dict[str, str])

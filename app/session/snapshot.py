@@ -1,0 +1,193 @@
+"""The immutable picture of everything that views are drawn from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from app.session.branches import Branch
+from app.session.decisions import Decision
+from app.session.draft import Draft
+from app.session.opened import Choice, Entry
+from app.session.story import Stop, Story
+from c2nav_engine.contract.prompt import Ranked
+
+LAYERS = ("scene", "trajectory", "fan", "goal", "reference", "markers", "thumbnails")
+"""What can be shown and hidden in the map; goal and reference path start hidden."""
+
+LAYERS_AT_FIRST = frozenset(("scene", "trajectory", "fan", "markers", "thumbnails"))
+
+
+@dataclass(frozen=True, slots=True)
+class Asking:
+    """A question that is with the ranker.
+
+    Attributes:
+        decision: Which one.
+        since_s: Wall clock when it went out.
+        queries: How many queries it is expected to take.
+        median_s: Median latency of a query so far; None before the first.
+    """
+
+    decision: int
+    since_s: float
+    queries: int
+    median_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class ForkOffer:
+    """A past override that waits for a yes, with what it is expected to take."""
+
+    decision: int
+    decisions: int
+    queries: int
+    seconds: float
+    dollars: float
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """One message to the person.
+
+    Attributes:
+        text: What to say.
+        fault: Whether something went wrong.
+        serial: Counts up, so that the same words can be said twice.
+    """
+
+    text: str = ""
+    fault: bool = False
+    serial: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """What people said about one decision."""
+
+    verdict: str = ""
+    tags: tuple[str, ...] = ()
+    flagged: bool = False
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Suspect:
+    """A decision that may have been the wrong turn (evaluation side; never shown blind).
+
+    Attributes:
+        decision: Which one.
+        regret_m: Geodesic metres given away against the best offered alternative; None unknown.
+        words: "nothing good offered", "vetoed", "early", … ; "" where the regret says it.
+    """
+
+    decision: int
+    regret_m: float | None
+    words: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """How the map is looked at.
+
+    Attributes:
+        camera: "free", "follow", "ego" or "top".
+        layers: Shown layers.
+        hovered: Lit alternative; "" for none.
+    """
+
+    camera: str = "free"
+    layers: frozenset[str] = LAYERS_AT_FIRST
+    hovered: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Chooser:
+    """What is open and what else there is."""
+
+    title: str
+    entries: tuple[Entry, ...]
+    choice: Choice
+    variants: tuple[str, ...] = ()
+    rankers: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """Everything, at one moment.
+
+    Attributes:
+        version: Counts up with every publication.
+        chooser: What is open and what else there is.
+        branches: All branches; the first is the root.
+        branch: The branch in view.
+        story: That branch, read.
+        stop: Index into the story's stops: where one stands.
+        proposals: Branch → the ranker's record for its pending decision.
+        asking: The question that is out, if any.
+        draft: The person's ranking so far.
+        offer: A fork that waits for a yes.
+        playing: "" or what it plays to ("play", "seeing", …, "end").
+        view: How the map is looked at.
+        judgements: (branch root trace, decision) → what people said.
+        notice: Last message.
+        driver: Page that sent the last command.
+        who: Name of the person.
+        working: What a background task is doing, "" for nothing.
+        consent_to: Host that waits for a yes before pictures go to it; "" for none.
+        no_scene: Why there is no scene; "" where there is one or it is on its way.
+        scene_serial: Counts the scenes that came.
+        parent: For a fork, the story it left.
+        suspects: Decisions of the branch in view worth a look, worst first.
+    """
+
+    version: int
+    chooser: Chooser
+    branches: tuple[Branch, ...]
+    branch: Branch
+    story: Story
+    stop: int
+    proposals: dict[str, Ranked] = field(default_factory=dict[str, Ranked])
+    asking: Asking | None = None
+    draft: Draft = field(default_factory=Draft)
+    offer: ForkOffer | None = None
+    playing: str = ""
+    view: View = field(default_factory=View)
+    judgements: dict[int, Judgement] = field(default_factory=dict[int, Judgement])
+    notice: Notice = field(default_factory=Notice)
+    driver: str = ""
+    who: str = "person 1"
+    working: str = ""
+    consent_to: str = ""
+    no_scene: str = ""
+    scene_serial: int = 0
+    parent: Story | None = None
+    suspects: tuple[Suspect, ...] = ()
+
+    @property
+    def here(self) -> Stop:
+        """Where one stands."""
+        return self.story.stops[self.stop]
+
+    @property
+    def decision(self) -> Decision | None:
+        """The decision in view: the one here, or the last one before."""
+        return self.story.decision_at(self.stop)
+
+    @property
+    def proposal(self) -> Ranked | None:
+        """What the ranker says to the pending decision, when that is in view."""
+        decision = self.decision
+        if decision is None or not decision.pending:
+            return None
+        return self.proposals.get(self.branch.branch_id)
+
+    @property
+    def shown(self) -> Ranked | None:
+        """The record of the decision in view, proposed or made."""
+        decision = self.decision
+        return None if decision is None else (decision.ranked or self.proposal)
+
+    @property
+    def token(self) -> str:
+        """Id of what one sees: changes with the branch, its length and the decision in view."""
+        return f"{self.branch.branch_id}.{self.story.length}.{self.here.decision}"

@@ -1,0 +1,148 @@
+"""The snapshot as JSON sections: `GET /api/state` sends all, the event stream what changed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from app.session.branches import Origin, cost_of, ended_words
+from app.session.cards import decision_json
+from app.session.decisions import Decision
+from app.session.route_text import route_segments
+from app.session.snapshot import Snapshot
+from app.session.timeline import timeline_of
+
+Json = dict[str, Any]
+
+SCHEMA = 1
+
+
+def state_json(snapshot: Snapshot) -> Json:
+    """Everything that the page's own elements draw."""
+    decision = snapshot.decision
+    return {
+        "schema": SCHEMA,
+        "id": snapshot.token,
+        "version": snapshot.version,
+        "episode": _episode(snapshot, decision),
+        "decision": decision_json(snapshot),
+        "pending": decision is not None and decision.pending,
+        "place": {
+            "step": snapshot.here.step,
+            "decision": snapshot.here.decision,
+            "at_decision": snapshot.here.at_decision,
+            "stop": snapshot.stop,
+            "stops": len(snapshot.story.stops),
+        },
+        "branch": _branch(snapshot),
+        "branches": [
+            {"id": b.branch_id, "origin": b.origin, "fork": b.fork_decision, "parent": b.parent}
+            for b in snapshot.branches
+        ],
+        "draft": {
+            "tiers": snapshot.draft.tiers,
+            "none": snapshot.draft.none,
+            "tie_next": snapshot.draft.tie_next,
+        },
+        "asking": _asking(snapshot),
+        "offer": _offer(snapshot),
+        "playing": snapshot.playing,
+        "view": {
+            "camera": snapshot.view.camera,
+            "layers": sorted(snapshot.view.layers),
+            "hovered": snapshot.view.hovered,
+        },
+        "timeline": timeline_of(snapshot),
+        "judgement": _judgement(snapshot),
+        "notice": {
+            "text": snapshot.notice.text,
+            "fault": snapshot.notice.fault,
+            "serial": snapshot.notice.serial,
+        },
+        "driver": snapshot.driver,
+        "who": snapshot.who,
+        "working": snapshot.working,
+        "consent_to": snapshot.consent_to,
+        "no_scene": snapshot.no_scene,
+    }
+
+
+def _episode(snapshot: Snapshot, decision: Decision | None) -> Json:
+    header = snapshot.story.header
+    episode = header.episode
+    return {
+        "id": episode.episode_id,
+        "scene": episode.scene_id,
+        "title": snapshot.chooser.title,
+        "instruction": episode.instruction,
+        "segments": route_segments(episode.instruction, header.legs),
+        "legs": len(header.legs),
+        "leg": decision.facts.leg if decision else 0,
+        "variant": header.variant,
+        "profile": header.profile.name,
+        "ranker": header.ranker,
+        "privileged": header.privileged,
+        "seed": header.seed,
+    }
+
+
+def _branch(snapshot: Snapshot) -> Json:
+    branch = snapshot.branch
+    return {
+        "id": branch.branch_id,
+        "origin": branch.origin,
+        "label": branch_label(snapshot),
+        "differs": branch.origin is Origin.FORK,
+        "fork": branch.fork_decision,
+        "running": branch.running,
+        "ended": ended_words(branch.footer) if branch.footer else "",
+        "decisions": cost_of(snapshot.story.decisions).decisions,
+    }
+
+
+def branch_label(snapshot: Snapshot) -> str:
+    """What the banner says."""
+    branch = snapshot.branch
+    how = "live" if branch.running else ended_words(branch.footer)
+    match branch.origin:
+        case Origin.RECORDED:
+            return f"recorded · {how}"
+        case Origin.LIVE:
+            return "live" if branch.running else how
+        case Origin.FORK:
+            return f"override at decision {branch.fork_decision} · {how}"
+
+
+def _asking(snapshot: Snapshot) -> Json | None:
+    asking = snapshot.asking
+    if asking is None:
+        return None
+    return {
+        "decision": asking.decision,
+        "since_s": asking.since_s,
+        "queries": asking.queries,
+        "median_s": asking.median_s,
+        "ranker": snapshot.story.header.ranker,
+    }
+
+
+def _offer(snapshot: Snapshot) -> Json | None:
+    offer = snapshot.offer
+    if offer is None:
+        return None
+    return {
+        "decision": offer.decision,
+        "decisions": offer.decisions,
+        "queries": offer.queries,
+        "seconds": round(offer.seconds, 1),
+        "dollars": round(offer.dollars, 2),
+    }
+
+
+def _judgement(snapshot: Snapshot) -> Json:
+    judgement = snapshot.judgements.get(snapshot.here.decision)
+    return {
+        "verdict": judgement.verdict if judgement else "",
+        "tags": judgement.tags if judgement else (),
+        "flagged": judgement.flagged if judgement else False,
+        "note": judgement.note if judgement else "",
+    }

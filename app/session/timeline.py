@@ -1,0 +1,113 @@
+"""The timeline: lanes of decisions, events and the distance to the goal, by low-level step."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from app.session.decisions import Decision
+from app.session.snapshot import Judgement, Snapshot
+from app.session.story import Story
+from app.session.wording import is_fault, outcome_words, slot_words
+from c2nav_engine.contract.outcome import Ordering
+from c2nav_engine.episodes.episode import Episode
+
+Json = dict[str, Any]
+
+FALLBACK = "fallback"
+
+
+def timeline_of(snapshot: Snapshot) -> Json:
+    """Everything that `<timeline-bar>` draws; a fork's parent is drawn as a ghost."""
+    story, parent = snapshot.story, snapshot.parent
+    steps = story.track.last_step
+    if parent is not None:
+        steps = max(steps, parent.track.last_step)
+    return {
+        "steps": steps,
+        "last": story.track.last_step,
+        "band_m": _band_m(story.header.episode),
+        "curve": _curve(story),
+        "ghost": None if parent is None else {"curve": _curve(parent), "marks": _marks(parent)},
+        "marks": _marks(story),
+        "events": [*_events(story), *_people(story, snapshot.judgements)],
+        "legs": _legs(story),
+        "regret": [
+            {"decision": s.decision, "step": story.decisions[s.decision].step, "m": s.regret_m}
+            for s in snapshot.suspects
+            if s.regret_m is not None and s.decision < len(story.decisions)
+        ],
+    }
+
+
+def _band_m(episode: Episode) -> float:
+    return episode.goal_radius_m
+
+
+def _curve(story: Story) -> list[list[float]]:
+    return [
+        [footstep.step, round(footstep.distance_m, 2)]
+        for footstep in story.track.footsteps
+        if math.isfinite(footstep.distance_m)
+    ]
+
+
+def _marks(story: Story) -> list[Json]:
+    return [_mark(decision) for decision in story.decisions]
+
+
+def _mark(decision: Decision) -> Json:
+    words = outcome_words(decision.outcome, decision.letters) if decision.outcome else ""
+    if decision.pending:
+        words = "waits for an answer"
+    elif decision.question is None:
+        words = "one view left" if decision.elected else "no view left"
+    return {
+        "lane": decision.lane,
+        "step": decision.step,
+        "decision": decision.number,
+        "pending": decision.pending,
+        "fault": is_fault(decision.outcome),
+        "open": decision.outcome is not None and not isinstance(decision.outcome, Ordering),
+        "words": f"decision {decision.number} · {slot_words(decision.slot)} · {words}",
+    }
+
+
+def _events(story: Story) -> list[Json]:
+    signs = {FALLBACK: "✕", "stalled": "✕"}
+    return [
+        {
+            "sign": signs.get(event.name, "·"),
+            "step": step,
+            "fault": event.name in signs,
+            "words": f"{event.name}: {event.detail}" if event.detail else event.name,
+        }
+        for _, step, event in story.events
+    ]
+
+
+def _people(story: Story, judgements: dict[int, Judgement]) -> list[Json]:
+    overrides = [
+        {"sign": "◆", "step": d.step, "fault": False, "words": f"override at decision {d.number}"}
+        for d in story.decisions
+        if d.override is not None
+    ]
+    reviews = [
+        {
+            "sign": "✓",
+            "step": story.decisions[number].step,
+            "fault": False,
+            "words": f"reviewed: {judgement.verdict or 'noted'}",
+        }
+        for number, judgement in sorted(judgements.items())
+        if number < len(story.decisions)
+    ]
+    return [*overrides, *reviews]
+
+
+def _legs(story: Story) -> list[Json]:
+    """Where each leg begins, by the decisions that were taken in it."""
+    starts: dict[int, int] = {}
+    for decision in story.decisions:
+        starts.setdefault(decision.facts.leg, decision.step)
+    return [{"leg": leg, "step": step} for leg, step in sorted(starts.items())]

@@ -1,0 +1,141 @@
+"""The one worker: it owns the engine and the truth; everybody else enqueues and looks.
+
+A question to a ranker may take minutes, so it goes out on a thread of its own and its answer comes
+back as one more message: the worker itself never waits for a model, and the page never freezes.
+"""
+
+from __future__ import annotations
+
+import logging
+import queue
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+from app.session import driving, moving
+from app.session.commands import Command
+from app.session.desk import Desk, Hands, Message
+from app.session.handling import handle
+from app.session.opened import Opened
+from app.session.pictures import Album
+from app.session.snapshot import Snapshot
+from c2nav_engine.errors import C2NavError
+from c2nav_engine.world.scene import Scene
+
+log = logging.getLogger(__name__)
+
+Subscriber = Callable[[Snapshot], None]
+
+
+class StaleCommand(C2NavError):
+    """A command was given to a state that is gone; the page looks again."""
+
+
+class Session:
+    """What is open, where one stands, and the thread that changes either."""
+
+    def __init__(self, opened: Opened, *, clock: Callable[[], float] = time.time) -> None:
+        """Open the source's first choice; raises `C2NavError` when that cannot be done."""
+        self.album = Album()
+        self._clock = clock
+        self._inbox: queue.Queue[Command | Message | None] = queue.Queue()
+        self._threads = ThreadPoolExecutor(max_workers=4, thread_name_prefix="c2nav-task")
+        self._subscribers: list[Subscriber] = []
+        self._closing = threading.Event()
+        self._desk = Desk(opened, self.album, Hands(self._background, clock))
+        self._published = self._desk.snapshot
+        self._worker = threading.Thread(target=self._work, name="c2nav-session", daemon=True)
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The newest published state."""
+        return self._published
+
+    @property
+    def scene(self) -> Scene | None:
+        """The scene of what is open, once it came; `snapshot.scene_serial` says when it changed."""
+        return self._desk.scene
+
+    def start(self) -> None:
+        """Begin to work; the first pending decision is reached without a command."""
+        self._inbox.put(lambda desk: driving.settle(desk, desk.snapshot.branch.branch_id))
+        self._worker.start()
+
+    def close(self) -> None:
+        """Stop working and let go of the runs."""
+        self._closing.set()
+        self._inbox.put(None)
+        if self._worker.is_alive():
+            self._worker.join(timeout=5.0)
+        self._threads.shutdown(wait=False, cancel_futures=True)
+        for run in self._desk.runs.values():
+            run.close()
+
+    def subscribe(self, subscriber: Subscriber) -> Callable[[], None]:
+        """Be called with every snapshot, on the worker's thread; returns how to stop that."""
+        self._subscribers.append(subscriber)
+        return lambda: self._subscribers.remove(subscriber)
+
+    def dispatch(self, command: Command) -> None:
+        """Enqueue a command; raises `StaleCommand` when its id is not the state's."""
+        if command.id is not None and command.id != self._published.token:
+            message = (
+                f"expected a command for state {self._published.token!r}, came one for "
+                f"{command.id!r}; read /api/state again"
+            )
+            raise StaleCommand(message)
+        self._inbox.put(command)
+
+    # ------------------------------------------------------------ the worker's thread
+
+    def _work(self) -> None:
+        while not self._closing.is_set():
+            try:
+                message = self._inbox.get(timeout=self._patience_s())
+            except queue.Empty:
+                self._guarded(moving.tick)
+            else:
+                self._take(message)
+            self._publish()
+
+    def _patience_s(self) -> float | None:
+        if not self._desk.snapshot.playing:
+            return None
+        return max(0.001, self._desk.due_s - self._clock())
+
+    def _take(self, message: Command | Message | None) -> None:
+        if isinstance(message, Command):
+            self._guarded(lambda desk: handle(desk, message))
+        elif message is not None:
+            self._guarded(message)
+
+    def _guarded(self, work: Message) -> None:
+        """Whatever goes wrong is said on the page; the worker lives on."""
+        try:
+            work(self._desk)
+        except C2NavError as error:
+            self._desk.say(str(error), fault=True)
+        except Exception as error:
+            log.exception("a command failed")
+            self._desk.say(f"{type(error).__name__}: {error}", fault=True)
+
+    def _publish(self) -> None:
+        if self._desk.snapshot is self._published:
+            return
+        self._desk.change(version=self._published.version + 1)
+        self._published = self._desk.snapshot
+        for subscriber in list(self._subscribers):
+            subscriber(self._published)
+
+    def _background(self, task: Callable[[], Message]) -> None:
+        self._threads.submit(lambda: self._inbox.put(self._outcome(task)))
+
+    @staticmethod
+    def _outcome(task: Callable[[], Message]) -> Message:
+        try:
+            return task()
+        except Exception as error:
+            log.exception("a background task failed")
+            problem = f"{type(error).__name__}: {error}"
+            return lambda desk: desk.say(problem, fault=True)

@@ -1,0 +1,89 @@
+// The page around viser's: strip, banner, timeline, waiting, keys, address.
+import { follow, link, send, state, subscribe, tab, toast } from "./store.js";
+import { h } from "./look.js";
+import "./route-strip.js";
+import "./rank-strip.js";
+import "./timeline-bar.js";
+import "./image-pair.js";
+import "./wait-card.js";
+import { keys } from "./keys.js";
+import { restore, remember } from "./address.js";
+
+document.title = "C²Nav inspector";
+
+const top = h("div", { id: "c2-top" });
+const banner = h("div", { id: "c2-banner", role: "status" });
+const tabs = h("div", { id: "c2-tabs" });
+const pills = h("div", { id: "c2-pills" }, banner, tabs);
+top.append(document.createElement("route-strip"), pills, document.createElement("wait-card"));
+const lower = h("div", { id: "c2-low" }, document.createElement("timeline-bar"));
+const toasts = h("div", { id: "c2-toasts", role: "status", "aria-live": "polite" });
+const lost = h("div", { id: "c2-lost", role: "alert", hidden: true }, "✕ no connection to the inspector; trying again…");
+
+function mount() {
+  document.body.append(top, lower, toasts, lost);
+  place();
+  new MutationObserver(place).observe(document.getElementById("root"), { childList: true, subtree: true });
+  window.addEventListener("resize", place);
+}
+
+let watched = null;
+const sizes = new ResizeObserver(() => place());
+
+/** Keep our strip over the part of the map that no dock covers. */
+function place() {
+  const canvas = document.querySelector("canvas[data-engine]");
+  if (canvas && canvas !== watched) {
+    watched = canvas;
+    sizes.observe(canvas);
+  }
+  const box = canvas?.getBoundingClientRect();
+  const left = box?.width ? box.left : 0;
+  const right = box?.width ? window.innerWidth - box.right : 0;
+  document.documentElement.style.setProperty("--c2-left", `${left}px`);
+  document.documentElement.style.setProperty("--c2-right", `${right}px`);
+}
+
+subscribe((now, changed) => {
+  if (changed.has("branch")) {
+    banner.textContent = now.branch.label;
+    banner.classList.toggle("differs", now.branch.differs);
+  }
+  if (changed.has("pages") || changed.has("driver")) {
+    const driver = now.driver && now.driver !== tab ? ` · ${now.driver} is driving` : "";
+    tabs.textContent = now.pages > 1 ? `${now.pages} pages open${driver}` : "";
+    tabs.hidden = now.pages < 2;
+  }
+  if (changed.has("notice") && now.notice.serial > 0 && now.notice.text) toast(now.notice.text, now.notice.fault);
+  if (changed.has("link")) lost.hidden = link.connected;
+  if (changed.has("place") || changed.has("branch") || changed.has("view")) remember(now);
+});
+
+window.addEventListener("c2-toast", ({ detail }) => {
+  const node = h("div", { class: detail.fault ? "c2-toast fault" : "c2-toast" }, `${detail.fault ? "✕ " : ""}${detail.text}`);
+  toasts.replaceChildren(node);
+  setTimeout(() => node.remove(), detail.fault ? 9000 : 4000);
+});
+
+// Buttons inside viser's panels carry their command; the state's id is added by `send`.
+document.addEventListener("click", (event) => {
+  const button = event.target.closest?.("[data-command]");
+  if (!button) return;
+  const { type, ...fields } = JSON.parse(button.dataset.command);
+  send(type, fields);
+});
+
+document.addEventListener("keydown", keys, true);
+document.addEventListener(
+  "keyup",
+  (event) => {
+    if (event.key.toLowerCase() === "z") window.dispatchEvent(new CustomEvent("c2-big", { detail: false }));
+  },
+  true,
+);
+
+if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", mount);
+else mount();
+restore();
+follow();
+window.c2nav = { state, send };

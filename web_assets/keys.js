@@ -1,0 +1,51 @@
+// Keys. They are handled here and not by viser, whose callbacks run in no order.
+import { send, state } from "./store.js";
+import { sheet } from "./sheet.js";
+
+const PLAIN = {
+  n: () => send("move", { by: "decision", count: 1 }),
+  p: () => send("move", { by: "decision", count: -1 }),
+  arrowright: () => send("move", { by: "step", count: 1 }),
+  arrowleft: () => send("move", { by: "step", count: -1 }),
+  " ": () => send(state.playing ? "pause" : "play"),
+  enter: () => send("commit"),
+  backspace: () => send("take_back"),
+  "=": () => send("tie"),
+  x: () => send("none"),
+  escape: () => send("clear"),
+  "[": () => send("jump", { to: "previous_disagreement" }),
+  "]": () => send("jump", { to: "next_disagreement" }),
+  b: () => send("jump", { to: "first_suspect" }),
+  a: () => send("verdict", { value: "agree" }),
+  s: () => send("verdict", { value: "acceptable" }),
+  w: () => send("verdict", { value: "wrong" }),
+  c: () => send("verdict", { value: "cannot tell" }),
+  f: () => send("flag"),
+  u: () => send("undo"),
+  r: () => send("redo"),
+  g: () => send("layer", { name: "goal", on: !state.view.layers.includes("goal") }),
+  z: () => window.dispatchEvent(new CustomEvent("c2-big", { detail: true })),
+  "?": () => sheet.toggle(),
+};
+
+/** Whether a key belongs to something that is being typed into or worked with. */
+function taken(event) {
+  const target = event.composedPath()[0];
+  if (!(target instanceof Element)) return false;
+  if (target.closest("input, textarea, select, [contenteditable], [role=slider], [role=combobox]")) return true;
+  // A focused button keeps Space and Enter for itself.
+  return (event.key === " " || event.key === "Enter") && target.closest("button, a") !== null;
+}
+
+export function keys(event) {
+  if (event.ctrlKey || event.metaKey || event.altKey || taken(event)) return;
+  if (document.querySelector("[data-mantine-shared-portal-node] [role=dialog]")) return;
+  const key = event.key.toLowerCase();
+  let action = PLAIN[key];
+  if (event.shiftKey && key === "b") action = () => send("jump", { to: "worst_suspect" });
+  if (/^[1-9]$/.test(key)) action = () => send("press", { position: Number(key) - 1 });
+  if (!action || (event.repeat && key !== "arrowright" && key !== "arrowleft")) return;
+  event.preventDefault();
+  event.stopPropagation();
+  action();
+}

@@ -1,0 +1,294 @@
+// The alternatives of the decision in view: click or drag them into order, ties, none of these.
+import { image, send, subscribe } from "./store.js";
+import { h, metres, styled } from "./look.js";
+
+const styles = styled(`
+  :host { padding: 0 11px; }
+  .chips { display: flex; flex-wrap: wrap; gap: 6px; margin: 0 0 10px; }
+  .chip { background: var(--c2-chip); border-radius: 10px; padding: 1px 9px; font-size: 12px; }
+  .cards { display: flex; flex-wrap: wrap; gap: 8px; align-items: stretch; }
+  .card { position: relative; flex: 1 0 160px; max-width: 244px; min-width: 160px; padding: 0;
+    display: flex; flex-direction: column; text-align: left; background: var(--c2-card);
+    border: 1px solid var(--c2-line); border-radius: 8px; overflow: hidden; cursor: pointer;
+    touch-action: none; user-select: none; }
+  .card.wide { flex-basis: 240px; max-width: none; }
+  .card.text { flex-basis: 100%; max-width: none; flex-direction: row; min-height: 48px; }
+  .card[data-rank="1"] { border: 4px solid var(--c2-blue); }
+  .card[data-rank="2"] { border-width: 2px; }
+  .card.lit { box-shadow: 0 0 0 3px var(--c2-halo); }
+  .card.vetoed { cursor: default; border-style: dashed; }
+  .card.dragged { opacity: 0.45; }
+  .card.before::before, .card.after::before { content: ""; position: absolute; z-index: 3; top: 0;
+    bottom: 0; width: 5px; background: var(--c2-blue); }
+  .card.before::before { left: 0; } .card.after::before { right: 0; }
+  .picture { width: 100%; aspect-ratio: var(--ratio, 1); background: var(--c2-well); display: block;
+    object-fit: contain; pointer-events: none; -webkit-user-drag: none; }
+  .vetoed .picture { filter: grayscale(1) contrast(0.45) brightness(1.35); }
+  .letter, .rank { position: absolute; top: 6px; background: var(--c2-card); color: var(--c2-ink);
+    font-weight: 600; border: 1px solid var(--c2-line); }
+  .letter { left: 6px; width: 24px; height: 24px; line-height: 22px; border-radius: 50%;
+    text-align: center; font-size: 13px; }
+  .rank { right: 6px; padding: 0 7px; border-radius: 6px; line-height: 22px; font-size: 13px; }
+  .text .letter, .text .rank { position: static; margin: 11px 0 0 10px; flex: none; }
+  .text .rank { margin: 11px 10px 0 auto; }
+  .caption { padding: 6px 8px 7px; font-size: 12px; line-height: 1.35; flex: 1; }
+  .text .caption { font-size: 14px; padding: 12px 10px; }
+  .x { color: var(--c2-vermilion); font-weight: 700; }
+  b { font-weight: 600; }
+  .context { display: flex; flex-wrap: wrap; gap: 8px; margin-bottom: 8px; }
+  .context figure { margin: 0; flex: 0 1 160px; font-size: 12px; color: var(--c2-quiet); }
+  .context img { width: 100%; display: block; border-radius: 6px; background: var(--c2-well); }
+  .context figure.small { flex-basis: 72px; }
+  .rail { display: flex; align-items: center; flex-wrap: wrap; gap: 6px; margin-top: 10px; min-height: 30px;
+    font-size: 14px; }
+  .rail .who { color: var(--c2-quiet); margin-right: 2px; font-size: 12px; }
+  .rail .order { font-weight: 600; }
+  .rail button { border: 1px solid var(--c2-line); background: var(--c2-card); border-radius: 6px;
+    padding: 3px 10px; min-height: 28px; cursor: pointer; }
+  .rail button.go { background: var(--c2-blue); border-color: var(--c2-blue); color: #fff; font-weight: 600; }
+  .rail button[aria-pressed="true"] { border-color: var(--c2-blue); color: var(--c2-blue-text); }
+  .rail .space { flex: 1; }
+  kbd { font: inherit; font-size: 12px; color: inherit; opacity: 0.75; margin-left: 4px; }
+  .empty { color: var(--c2-quiet); margin: 6px 0; }
+  :host([data-big]) .card { flex-basis: 448px; max-width: none; }
+  :host([data-big]) .picture { image-rendering: pixelated; }
+`);
+
+const WHOSE = {
+  draft: "your ranking",
+  override: "◆ overridden",
+  proposal: "proposed",
+  committed: "committed",
+  unasked: "not asked",
+  waiting: "",
+};
+
+class RankStrip extends HTMLElement {
+  constructor() {
+    super();
+    this.attachShadow({ mode: "open" }).adoptedStyleSheets = styles;
+  }
+
+  connectedCallback() {
+    const sections = ["decision", "draft", "asking", "view", "offer"];
+    this.stop = subscribe((state, changed) => {
+      if (sections.some((name) => changed.has(name)) && !this.drag) this.draw(state);
+    });
+    this.onbig = (event) => this.toggleAttribute("data-big", event.detail);
+    window.addEventListener("c2-big", this.onbig);
+  }
+
+  disconnectedCallback() {
+    this.stop?.();
+    window.removeEventListener("c2-big", this.onbig);
+  }
+
+  draw(state) {
+    this.state = state;
+    const decision = state.decision;
+    if (!decision) {
+      this.shadowRoot.replaceChildren(h("p", { class: "empty" }, "The robot has not looked around yet"));
+      return;
+    }
+    const focused = this.shadowRoot.activeElement?.dataset.key;
+    const parts = [this.chips(decision), this.context(decision)];
+    if (decision.cards.length) {
+      const cards = h("div", { class: "cards", role: "list" });
+      cards.append(...decision.cards.map((card) => this.card(card, decision, state)));
+      parts.push(cards);
+    } else parts.push(h("p", { class: "empty" }, "Nothing was offered"));
+    if (decision.asked) parts.push(this.rail(decision, state));
+    this.shadowRoot.replaceChildren(...parts.filter(Boolean));
+    if (focused) this.shadowRoot.querySelector(`[data-key="${CSS.escape(focused)}"]`)?.focus();
+  }
+
+  chips(decision) {
+    const orders = { cyclic: "asked in every order", both: "asked in both orders", once: "" };
+    const words = [
+      `decision ${decision.number} of ${decision.total}`,
+      `${decision.words} ${decision.sign}`,
+      decision.contested ? `contested: ${decision.contested}` : "",
+      decision.asked ? orders[decision.orders] : "not asked",
+    ];
+    return h("div", { class: "chips" }, ...words.filter(Boolean).map((w) => h("span", { class: "chip" }, w)));
+  }
+
+  context(decision) {
+    if (!decision.context.length) return null;
+    return h(
+      "div",
+      { class: "context" },
+      ...decision.context.map(({ words, sha }, index) =>
+        h(
+          "figure",
+          { class: index > 0 && decision.context.length > 2 ? "small" : null },
+          h("img", { src: image(sha), alt: words }),
+          words,
+        ),
+      ),
+    );
+  }
+
+  card(card, decision, state) {
+    const wide = card.width > 1.5 * card.height;
+    const kinds = ["card", card.sha ? "" : "text", wide ? "wide" : "", card.feasible ? "" : "vetoed"];
+    if (state.view.hovered === card.key) kinds.push("lit");
+    const node = h("button", {
+      type: "button",
+      role: "listitem",
+      class: kinds.filter(Boolean).join(" "),
+      "data-key": card.key,
+      "data-rank": card.rank,
+      "aria-disabled": card.feasible ? null : "true",
+      "aria-label": this.spoken(card),
+      style: card.sha ? `--ratio:${card.width / card.height}` : null,
+      onpointerenter: () => card.feasible && this.hover(card.key),
+      onpointerleave: () => this.hover(""),
+      onpointerdown: (event) => card.feasible && decision.asked && this.begin(event, card.key),
+      onkeydown: (event) => this.key(event, card),
+    });
+    node.append(h("span", { class: "letter" }, card.letter || "–"));
+    if (card.ordinal) node.append(h("span", { class: "rank" }, card.ordinal));
+    if (card.sha) node.append(h("img", { class: "picture", src: image(card.sha), alt: "", draggable: "false" }));
+    node.append(this.caption(card, decision));
+    if (!card.sha) node.append(node.querySelector(".rank") ?? "");
+    return node;
+  }
+
+  spoken(card) {
+    if (!card.feasible) return `${card.name}, vetoed: ${card.veto}`;
+    return `${card.letter} ${card.name} ${card.ordinal}`.trim();
+  }
+
+  caption(card, decision) {
+    if (!card.feasible) {
+      return h("span", { class: "caption" }, h("span", { class: "x" }, "✕ "), h("b", {}, "vetoed"), ` · ${card.veto}`);
+    }
+    const words = [card.sha ? card.name : card.text];
+    if (card.free_m !== null) words.push(`free ${metres(card.free_m)}`);
+    if (card.rank === 1 && card.sha && decision.source !== "draft")
+      words.push(decision.pending ? "proposed" : "elected");
+    return h("span", { class: "caption" }, words.filter(Boolean).join(" · "));
+  }
+
+  rail(decision, state) {
+    const drafted = decision.source === "draft";
+    const rail = h("div", { class: "rail" });
+    if (state.asking && state.asking.decision === decision.number && !drafted) {
+      rail.append(h("span", { class: "who" }, "asking…"));
+    } else {
+      rail.append(h("span", { class: "who" }, WHOSE[decision.source]), h("span", { class: "order" }, decision.outcome || "–"));
+    }
+    rail.append(h("span", { class: "space" }));
+    const more = [
+      ["none", "None of these", "X", state.draft.none],
+      ["tie", "Tie", "=", state.draft.tie_next],
+    ];
+    if (drafted) {
+      for (const [type, label, key, pressed] of more)
+        rail.append(h("button", { type: "button", "aria-pressed": `${pressed}`, onclick: () => send(type) }, label, h("kbd", {}, key)));
+      rail.append(h("button", { type: "button", onclick: () => send("clear") }, "Clear", h("kbd", {}, "Esc")));
+      const go = decision.pending ? "Commit" : state.offer ? "Fork now" : "Fork here…";
+      rail.append(h("button", { type: "button", class: "go", onclick: () => send("commit") }, go, h("kbd", {}, "⏎")));
+    } else {
+      rail.append(h("button", { type: "button", onclick: () => send("none") }, "None of these", h("kbd", {}, "X")));
+      if (decision.pending)
+        rail.append(h("button", { type: "button", class: "go", onclick: () => send("commit") }, "Commit", h("kbd", {}, "⏎")));
+    }
+    return rail;
+  }
+
+  hover(key) {
+    if (this.drag || this.state.view.hovered === key) return;
+    clearTimeout(this.hovering);
+    this.hovering = setTimeout(() => send("hover", { key }), 60);
+  }
+
+  key(event, card) {
+    if (event.key === " " || event.key === "Enter") {
+      // Enter on a card ranks it; Enter elsewhere commits.
+      if (event.key === "Enter" && this.state.decision.source === "draft") return;
+      event.preventDefault();
+      event.stopPropagation();
+      if (card.feasible) send("press", { key: card.key });
+    } else if (event.altKey && (event.key === "ArrowLeft" || event.key === "ArrowRight")) {
+      event.preventDefault();
+      event.stopPropagation();
+      this.shift(card.key, event.key === "ArrowLeft" ? -1 : 1);
+    }
+  }
+
+  /** Tiers as shown, with everything that was offered. */
+  tiers() {
+    const decision = this.state.decision;
+    const offered = decision.cards.filter((card) => card.feasible);
+    const ranks = [...new Set(offered.map((card) => card.rank ?? 99))].sort((a, b) => a - b);
+    return ranks.map((rank) => offered.filter((card) => (card.rank ?? 99) === rank).map((card) => card.key));
+  }
+
+  shift(key, by) {
+    const flat = this.tiers().flat();
+    const from = flat.indexOf(key);
+    const to = Math.max(0, Math.min(flat.length - 1, from + by));
+    flat.splice(to, 0, ...flat.splice(from, 1));
+    send("arrange", { tiers: flat.map((one) => [one]) });
+  }
+
+  // ---------------------------------------------------------------- dragging
+
+  begin(event, key) {
+    if (event.button !== 0) return;
+    const node = event.currentTarget;
+    const start = { x: event.clientX, y: event.clientY };
+    const move = (next) => {
+      const far = Math.hypot(next.clientX - start.x, next.clientY - start.y) > 6;
+      if (!this.drag && far) {
+        this.drag = { key, target: null };
+        node.classList.add("dragged");
+      }
+      if (this.drag) this.over(next);
+    };
+    const end = () => {
+      window.removeEventListener("pointermove", move);
+      window.removeEventListener("pointerup", end);
+      window.removeEventListener("pointercancel", end);
+      const drag = this.drag;
+      this.drag = null;
+      node.classList.remove("dragged");
+      if (!drag) send("press", { key });
+      else if (drag.target) this.drop(drag);
+      else this.draw(this.state);
+    };
+    window.addEventListener("pointermove", move);
+    window.addEventListener("pointerup", end);
+    window.addEventListener("pointercancel", end);
+  }
+
+  /** The card under the pointer, and which third of it: before, with, after. */
+  over(event) {
+    this.drag.target = null;
+    for (const card of this.shadowRoot.querySelectorAll(".card")) {
+      card.classList.remove("before", "after", "lit");
+      const box = card.getBoundingClientRect();
+      const inside =
+        event.clientX >= box.left && event.clientX <= box.right && event.clientY >= box.top && event.clientY <= box.bottom;
+      if (!inside || card.dataset.key === this.drag.key || card.classList.contains("vetoed")) continue;
+      const part = (event.clientX - box.left) / box.width;
+      const where = part < 0.4 ? "before" : part > 0.6 ? "after" : "with";
+      card.classList.add(where === "with" ? "lit" : where);
+      this.drag.target = { key: card.dataset.key, where };
+    }
+  }
+
+  drop({ key, target }) {
+    const tiers = this.tiers()
+      .map((tier) => tier.filter((one) => one !== key))
+      .filter((tier) => tier.length);
+    const index = tiers.findIndex((tier) => tier.includes(target.key));
+    if (target.where === "with") tiers[index].push(key);
+    else tiers.splice(target.where === "before" ? index : index + 1, 0, [key]);
+    send("arrange", { tiers });
+  }
+}
+
+customElements.define("rank-strip", RankStrip);

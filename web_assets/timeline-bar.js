@@ -1,0 +1,203 @@
+// Full width: distance to the goal, lanes by slot, events; everything can be clicked.
+import { send, subscribe } from "./store.js";
+import { h, s, styled } from "./look.js";
+
+const LEFT = 128;
+const RIGHT = 18;
+const CURVE = { top: 8, height: 38 };
+const LANES = [60, 74, 88];
+const EVENTS = 102;
+const SIGNS = ["●", "▲", "■"];
+const NAMES = ["Seeing", "Transition", "Arriving"];
+
+const styles = styled(`
+  :host { position: relative; background: var(--c2-card); border-top: 1px solid var(--c2-line); height: 112px; }
+  svg { display: block; width: 100%; height: 100%; cursor: pointer; touch-action: none; }
+  text { font: 12px var(--c2-font); fill: var(--c2-quiet); font-variant-numeric: tabular-nums; }
+  .band { fill: var(--c2-band); }
+  .curve { fill: none; stroke: var(--c2-ink); stroke-width: 2; }
+  .rest { fill: none; stroke: var(--c2-far); stroke-width: 1.5; stroke-dasharray: 4 3; }
+  .grid { stroke: var(--c2-line); stroke-width: 1; }
+  .mark text { font-size: 13px; fill: var(--c2-ink); text-anchor: middle; }
+  .mark.far text { fill: var(--c2-far); }
+  .mark.bad text, .bad { fill: var(--c2-vermilion); }
+  .mark.now text { fill: var(--c2-blue-text); font-size: 16px; }
+  .mark:hover text { fill: var(--c2-blue-text); }
+  .mark rect { fill: transparent; }
+  .leg { stroke: var(--c2-line); stroke-dasharray: 2 3; }
+  .legname { fill: var(--c2-quiet); }
+  .here { stroke: var(--c2-blue); stroke-width: 2; }
+  .heretext { fill: var(--c2-blue-text); font-weight: 600; paint-order: stroke; stroke: var(--c2-card);
+    stroke-width: 4px; }
+  .regret { fill: var(--c2-vermilion); opacity: 0.85; }
+  .tip { position: absolute; bottom: calc(100% + 4px); background: var(--c2-ink); color: var(--c2-card);
+    border-radius: 6px; padding: 3px 8px; font-size: 12px; white-space: nowrap; pointer-events: none;
+    max-width: 480px; overflow: hidden; text-overflow: ellipsis; }
+`);
+
+class TimelineBar extends HTMLElement {
+  constructor() {
+    super();
+    this.attachShadow({ mode: "open" }).adoptedStyleSheets = styles;
+  }
+
+  connectedCallback() {
+    this.setAttribute("role", "group");
+    this.setAttribute("aria-label", "timeline");
+    this.tip = h("div", { class: "tip", hidden: true });
+    this.stop = subscribe((state, changed) => {
+      if (changed.has("timeline") || changed.has("place"))
+        this.draw({ ...state.timeline, here: state.place });
+    });
+    this.sizes = new ResizeObserver(() => this.timeline && this.draw(this.timeline));
+    this.sizes.observe(this);
+  }
+
+  disconnectedCallback() {
+    this.stop?.();
+    this.sizes?.disconnect();
+  }
+
+  draw(timeline) {
+    this.timeline = timeline;
+    const width = this.clientWidth;
+    if (!width) return;
+    const steps = Math.max(timeline.steps, 12);
+    this.x = (step) => LEFT + ((width - LEFT - RIGHT) * step) / steps;
+    this.step = (x) => Math.round(((x - LEFT) * steps) / (width - LEFT - RIGHT));
+    const svg = s("svg", { width, height: 112, role: "img" });
+    svg.append(...this.curve(timeline, width), ...this.lanes(timeline), ...this.here(timeline, width));
+    svg.addEventListener("pointerdown", (event) => this.scrub(event));
+    this.shadowRoot.replaceChildren(svg, this.tip);
+  }
+
+  curve(timeline, width) {
+    const ghost = timeline.ghost?.curve ?? [];
+    const all = [...timeline.curve, ...ghost];
+    const most = Math.max(timeline.band_m * 1.4, ...all.map(([, distance]) => distance));
+    const y = (distance) => CURVE.top + CURVE.height * (1 - distance / most);
+    const line = (points) => points.map(([step, d], i) => `${i ? "L" : "M"}${this.x(step)} ${y(d)}`).join("");
+    const done = timeline.curve.filter(([step]) => step <= timeline.here.step);
+    const rest = timeline.curve.filter(([step]) => step >= timeline.here.step);
+    const parts = [
+      s("text", { x: 14, y: CURVE.top + 8 }, "distance, m"),
+      s("rect", {
+        class: "band",
+        x: LEFT,
+        width: width - LEFT - RIGHT,
+        y: y(timeline.band_m),
+        height: y(0) - y(timeline.band_m),
+      }),
+    ];
+    const label = (value, at) => s("text", { x: LEFT - 8, y: at + 4, "text-anchor": "end" }, value);
+    parts.push(label("0", y(0) + 1), label(`${+timeline.band_m.toFixed(1)}`, y(timeline.band_m) - 3));
+    if (most > timeline.band_m * 1.6) parts.push(label(most.toFixed(0), y(most) + 2));
+    for (const { leg, step } of timeline.legs) {
+      if (timeline.legs.length < 2) break;
+      parts.push(s("line", { class: "leg", x1: this.x(step), x2: this.x(step), y1: CURVE.top - 4, y2: y(0) }));
+      parts.push(s("text", { class: "legname", x: this.x(step) + 4, y: CURVE.top + 4 }, `leg ${leg + 1}`));
+    }
+    if (ghost.length > 1) parts.push(s("path", { class: "rest", d: line(ghost) }));
+    if (rest.length > 1) parts.push(s("path", { class: "rest", d: line(rest) }));
+    if (done.length > 1) parts.push(s("path", { class: "curve", d: line(done) }));
+    return parts;
+  }
+
+  lanes(timeline) {
+    const parts = NAMES.map((name, lane) => s("text", { x: 14, y: LANES[lane] + 4 }, `${SIGNS[lane]} ${name}`));
+    parts.push(s("text", { x: 14, y: EVENTS + 4 }, "events"));
+    for (const mark of timeline.ghost?.marks ?? []) {
+      if (mark.step > timeline.last) parts.push(this.mark(mark, LANES[mark.lane], SIGNS[mark.lane], "far", null));
+    }
+    const here = timeline.here;
+    for (const mark of timeline.marks) {
+      const kinds = [];
+      if (mark.decision === here.decision) kinds.push("now");
+      else if (mark.step > here.step || mark.decision > here.decision) kinds.push("far");
+      if (mark.fault) kinds.push("bad");
+      const sign = mark.fault ? "✕" : mark.open ? { 0: "○", 1: "△", 2: "□" }[mark.lane] : SIGNS[mark.lane];
+      parts.push(this.mark(mark, LANES[mark.lane], sign, kinds.join(" "), { decision: mark.decision }));
+    }
+    for (const event of timeline.events) {
+      const kind = `${event.fault ? "bad" : ""} ${event.step > here.step ? "far" : ""}`;
+      parts.push(this.mark(event, EVENTS, event.sign, kind, { step: event.step }));
+    }
+    for (const { decision, step, m } of timeline.regret) {
+      const height = Math.min(14, 3 + m * 3);
+      const bar = s("rect", { class: "regret", x: this.x(step) - 2, width: 4, y: 54 - height, height });
+      const group = s("g", { class: "mark" }, bar);
+      this.reacts(group, { step, words: `decision ${decision} · regret ${m.toFixed(1)} m` }, { decision });
+      parts.push(group);
+    }
+    return parts;
+  }
+
+  mark(mark, y, sign, kind, target) {
+    const x = this.x(mark.step);
+    const group = s(
+      "g",
+      { class: `mark ${kind}` },
+      s("rect", { x: x - 6, y: y - 12, width: 12, height: 24 }),
+      s("text", { x, y: y + 4 }, sign),
+    );
+    this.reacts(group, mark, target);
+    return group;
+  }
+
+  reacts(group, mark, target) {
+    group.addEventListener("pointerenter", () => {
+      this.tip.textContent = mark.words;
+      this.tip.hidden = false;
+      const room = this.clientWidth - 490;
+      this.tip.style.left = `${Math.max(8, Math.min(this.x(mark.step) - 40, room))}px`;
+    });
+    group.addEventListener("pointerleave", () => (this.tip.hidden = true));
+    if (!target) return;
+    group.addEventListener("pointerdown", (event) => {
+      event.stopPropagation();
+      send("go", target);
+    });
+  }
+
+  here(timeline, width) {
+    const x = this.x(timeline.here.step);
+    const words = `step ${timeline.here.step}${timeline.here.decision >= 0 ? ` · decision ${timeline.here.decision}` : ""}`;
+    const flip = x > width - 170;
+    return [
+      s("line", { class: "here", x1: x, x2: x, y1: 2, y2: 110 }),
+      s("text", { class: "heretext", x: flip ? x - 7 : x + 7, y: 13, "text-anchor": flip ? "end" : "start" }, words),
+    ];
+  }
+
+  /** Dragging goes through steps; the newest position wins. */
+  scrub(event) {
+    const go = (next) => {
+      const box = this.getBoundingClientRect();
+      const step = Math.max(0, Math.min(this.timeline.last, this.step(next.clientX - box.left)));
+      if (step === this.scrubbed) return;
+      this.scrubbed = step;
+      this.wanted = step;
+      if (!this.sending) this.drain();
+    };
+    const end = () => {
+      this.scrubbed = null;
+      window.removeEventListener("pointermove", go);
+      window.removeEventListener("pointerup", end);
+    };
+    window.addEventListener("pointermove", go);
+    window.addEventListener("pointerup", end);
+    go(event);
+  }
+
+  async drain() {
+    this.sending = true;
+    while (this.wanted !== null) {
+      const step = this.wanted;
+      this.wanted = null;
+      await send("go", { step });
+    }
+    this.sending = false;
+  }
+}
+
+customElements.define("timeline-bar", TimelineBar);
