@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from c2nav_engine.contract.outcome import Answered, Cardinal, Invalid, Key, Ordering
 from c2nav_engine.contract.prompt import Prompt, Reply
@@ -49,6 +49,7 @@ class SlotTruth:
     fan_offset_rad: float = math.radians(45.0)
 
 
+@runtime_checkable
 class Truth(Protocol):
     """Tells the observer what is true; supplied by whoever stands outside the loop."""
 
