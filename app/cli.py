@@ -14,6 +14,8 @@ import tyro
 
 from c2nav_engine.errors import C2NavError, InputError, MissingExtra, RankerStopped
 
+Command = Callable[..., int]
+
 COMMANDS = (
     "doctor",
     "episodes",
@@ -51,26 +53,30 @@ def _dispatch(words: list[str]) -> int:
     """Load only the named subcommand: each brings its own heavy imports."""
     name = next((word for word in words if not word.startswith("-")), "")
     if name not in COMMANDS:
-        table = {known: _loaded(known) for known in COMMANDS}
-        functions = {known: f for known, f in table.items() if not isinstance(f, dict)}
-        groups = {
-            f"{known} {inner}": f
-            for known, group in table.items()
-            if isinstance(group, dict)
-            for inner, f in group.items()
-        }
-        return _code(tyro.extras.subcommand_cli_from_dict({**functions, **groups}, args=words))
+        return _code(tyro.extras.subcommand_cli_from_dict(_everything(), args=words))
     command = _loaded(name)
-    if isinstance(command, dict):
+    if not callable(command):
         return _code(
             tyro.extras.subcommand_cli_from_dict(command, args=words[1:], prog=f"c2nav {name}")
         )
     return _code(tyro.cli(command, args=words[1:], prog=f"c2nav {name}"))
 
 
+def _everything() -> dict[str, Command]:
+    """All subcommands flat, for `c2nav --help`."""
+    flat: dict[str, Command] = {}
+    for name in COMMANDS:
+        command = _loaded(name)
+        if not callable(command):
+            flat.update({f"{name} {inner}": function for inner, function in command.items()})
+        else:
+            flat[name] = command
+    return flat
+
+
 def _code(result: object) -> int:
     return result if isinstance(result, int) else 0
 
 
-def _loaded(name: str) -> Callable[..., int] | dict[str, Callable[..., int]]:
+def _loaded(name: str) -> Command | dict[str, Command]:
     return getattr(importlib.import_module(f"app.commands.{name}"), name)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import tyro
 from rich.console import Console
@@ -39,6 +39,10 @@ from c2nav_engine.experiments.spec import RunSpec, Setting
 from c2nav_engine.experiments.summary import summarise
 from c2nav_engine.experiments.working import Finished, source_of
 from c2nav_engine.navigator.variants import preset
+
+
+MOST_ROWS = 40
+"""Longer tables are left to the files."""
 
 
 def run(
@@ -128,7 +132,7 @@ def _tell(rows: Sequence[Row]) -> None:
         table.add_column(
             name, justify="left" if name in {"episode", "variant", "outcome"} else "right"
         )
-    shown = rows if len(rows) <= 40 else []
+    shown = rows if len(rows) <= MOST_ROWS else ()
     for row in shown:
         table.add_row(
             str(row["episode_id"]),
@@ -142,23 +146,24 @@ def _tell(rows: Sequence[Row]) -> None:
         console.print(_group_line(group))
 
 
-def _group_line(group: dict[str, dict[str, float] | int | str | None]) -> str:
+def _group_line(group: Mapping[str, Any]) -> str:
+    """One variant's rates with their intervals, for people: percent on the screen only."""
+
     def percent(name: str) -> str:
         entry = group[name]
-        if not isinstance(entry, dict):
+        if entry is None:
             return "–"
-        return f"{100 * entry['value']:.1f} ({100 * entry['low']:.0f}–{100 * entry['high']:.0f})"
+        return f"{100 * entry['value']:.1f} % ({100 * entry['low']:.0f}–{100 * entry['high']:.0f})"
 
-    ne, spl = group["ne_m"], group["spl"]
-    return (
-        f"{group['variant']} · {group['ranker']} · {group['n']} episodes: NE {ne['value']:.2f} m · "
-        if isinstance(ne, dict)
-        else ""
-    ) + (
-        f"OSR {percent('osr')} · SR {percent('sr')} · SPL {100 * spl['value']:.1f} %"
-        if isinstance(spl, dict)
-        else ""
-    )
+    error = group["ne_m"]
+    parts = [
+        f"NE {error['value']:.2f} m" if error else "NE –",
+        f"OSR {percent('osr')}",
+        f"SR {percent('sr')}",
+        f"SPL {100 * group['spl']['value']:.1f} %" if group["spl"] else "SPL –",
+    ]
+    head = f"{group['variant']} · {group['ranker']} · {group['n']} episodes: "
+    return head + " · ".join(parts)
 
 
 def _cell(value: str | float | None) -> str:

@@ -1,0 +1,51 @@
+"""`c2nav inspect`: the inspector on a source, on traces, or on a run folder."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import tyro
+from rich.console import Console
+
+from app.commands.options import RankerOptions, ScenesOpt, key_values
+from app.commands.sources import opened_source, opened_traces, trace_files
+from app.gateway.serving import Address, serve, tunnel_line
+from c2nav_engine.experiments.rankers import DEFAULT_RANKER
+from c2nav_engine.experiments.spec import Setting
+
+
+def inspect(
+    what: Annotated[
+        tuple[str, ...],
+        tyro.conf.Positional,
+        tyro.conf.arg(metavar="SOURCE|TRACE…|RUN", help="`builtin` by default."),
+    ] = ("builtin",),
+    scenes: ScenesOpt = None,
+    ranker: str = DEFAULT_RANKER,
+    ranker_opt: RankerOptions = (),
+    profile: str = "vlnce",
+    host: Annotated[str, tyro.conf.arg(help="Address to bind.")] = "127.0.0.1",
+    port: Annotated[int, tyro.conf.arg(help="Port to bind; 0 takes a free one.")] = 8080,
+    no_browser: Annotated[bool, tyro.conf.arg(help="Do not open a browser.")] = False,
+) -> int:
+    """Open the inspector; it stands at the first pending decision."""
+    traces = trace_files(what)
+    setting = Setting(
+        source="builtin" if traces else what[0],
+        scenes=str(scenes) if scenes else "",
+        profile=profile,
+        ranker=ranker,
+        ranker_options=key_values(ranker_opt),
+    )
+    setting.check()
+    opened = opened_traces(traces, setting) if traces else opened_source(setting)
+    serve(opened, host=host, port=port, no_browser=no_browser, ready=_tell)
+    return 0
+
+
+def _tell(address: Address) -> None:
+    console = Console(highlight=False)
+    console.print(f"inspector at {address.url}")
+    tunnel = tunnel_line(address)
+    if tunnel:
+        console.print(f"from another machine: {tunnel}", markup=False)

@@ -1,0 +1,207 @@
+"""What `inspect` opens: live episodes of a source, or recorded traces; forks from either."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from app.session.opened import Choice, Entry, Opened, Opening, Run
+from c2nav_engine.episodes.profile import Profile, profile_named
+from c2nav_engine.errors import SceneError, UsageError
+from c2nav_engine.experiments.rankers import RANKERS, seats_for
+from c2nav_engine.experiments.spec import Setting
+from c2nav_engine.experiments.working import source_of
+from c2nav_engine.navigator.config import LoopConfig
+from c2nav_engine.navigator.variants import PRESETS
+from c2nav_engine.runner.exchange import Exchange, Override
+from c2nav_engine.runner.opening import OpenSpec, Workbench
+from c2nav_engine.runner.record import Header
+from c2nav_engine.runner.recorded import open_trace, read_trace
+from c2nav_engine.runner.recording import TraceWriter
+from c2nav_engine.runner.reshell import source_of_record
+from c2nav_engine.runner.source import Source
+from c2nav_engine.runner.worlds import Worlds, WorldsConfig
+from c2nav_engine.world.scene import Scene
+
+INSPECTED = Path("logs") / "inspected"
+"""Where live episodes and forks of the inspector are recorded, below the working folder."""
+
+
+def trace_files(what: Sequence[str]) -> tuple[Path, ...]:
+    """The traces that the words name: files, or the run folder's; () for a source of episodes."""
+    found: list[Path] = []
+    for word in what:
+        path = Path(word)
+        if path.is_dir():
+            inside = sorted((path / "traces").glob("*.mcap")) or sorted(path.glob("*.mcap"))
+            if not inside:
+                message = f"expected a run folder with traces, came {word}: no .mcap in it"
+                raise UsageError(message)
+            found += inside
+        elif path.suffix == ".mcap" or word.endswith(".mcap.part"):
+            found.append(path)
+        elif len(what) > 1:
+            message = f"expected traces or run folders, or one source; came {' '.join(what)}"
+            raise UsageError(message)
+    return tuple(found)
+
+
+def opened_source(setting: Setting) -> Opened:
+    """Live episodes of `builtin` or an episode file."""
+    source = source_of(setting)
+    profile = profile_named(setting.profile)
+    worlds = Worlds(source, WorldsConfig(profile))
+    entries = tuple(
+        Entry(item.episode_id, f"episode {item.episode_id} · {item.instruction}")
+        for item in source.file.episodes
+    )
+    live = Live(source, worlds, profile, setting)
+    return Opened(
+        title=source.file.name,
+        entries=entries,
+        first=Choice(entries[0].entry_id, "full", setting.ranker),
+        open=live.open,
+        fork=live.fork,
+        variants=tuple(PRESETS),
+        rankers=tuple(RANKERS),
+        sends_to=host_beyond(setting),
+    )
+
+
+class Live:
+    """Opens and forks live episodes of one source."""
+
+    def __init__(self, source: Source, worlds: Worlds, profile: Profile, setting: Setting) -> None:
+        self._source = source
+        self._worlds = worlds
+        self._profile = profile
+        self._setting = setting
+
+    def open(self, choice: Choice) -> Opening:
+        """Start an episode under the chosen variant and ranker."""
+        variant = choice.variant or "full"
+        spec = OpenSpec(
+            choice.entry_id,
+            variant,
+            run="inspected",
+            trace=_fresh(f"{choice.entry_id}.{variant}"),
+        )
+        run = self._bench(choice.ranker or self._setting.ranker).open(spec)
+        scene = run.scene
+        return Opening(header=run.header, run=run, scene=None if scene is None else lambda: scene)
+
+    def fork(
+        self, header: Header, exchanges: Sequence[Exchange], decision: int, override: Override
+    ) -> Run:
+        """Another answer at a decision, then the present ranker."""
+        spec = OpenSpec(
+            header.episode.episode_id,
+            header.variant,
+            header.seed,
+            run="inspected",
+            trace=_fresh(f"{header.episode.episode_id}.{header.variant}.at{decision}"),
+            config=LoopConfig.from_json(header.config),
+            fork_decision=decision,
+        )
+        return self._bench(self._setting.ranker).fork(spec, exchanges, override)
+
+    def _bench(self, ranker: str) -> Workbench:
+        own = ranker == self._setting.ranker
+        options = self._setting.ranker_options if own else dict[str, str]()
+        return Workbench(
+            source=self._source,
+            worlds=self._worlds,
+            profile=self._profile,
+            seat_for=seats_for(ranker, options),
+            recorder_for=TraceWriter,
+        )
+
+
+def opened_traces(paths: Sequence[Path], setting: Setting) -> Opened:
+    """Recorded episodes; forks where the scene is to be had."""
+    entries = tuple(_entry(path) for path in paths)
+    by_id = {entry.entry_id: path for entry, path in zip(entries, paths, strict=True)}
+    scenes = Path(setting.scenes) if setting.scenes else None
+    title = paths[0].name if len(paths) == 1 else str(paths[0].parent.parent.name)
+    return Opened(
+        title=title,
+        entries=entries,
+        first=Choice(entries[0].entry_id),
+        open=lambda choice: _recorded(by_id[choice.entry_id], scenes),
+        fork=partial(_fork_recorded, setting),
+        rankers=tuple(RANKERS),
+    )
+
+
+def _entry(path: Path) -> Entry:
+    with open_trace(path) as trace:
+        header, footer = trace.header, trace.footer
+    label = f"episode {header.episode.episode_id} · {header.variant} · {header.ranker}"
+    return Entry(str(path), label, outcome=footer.outcome.value)
+
+
+def _recorded(path: Path, scenes: Path | None) -> Opening:
+    trace = read_trace(path)
+    source = source_of_record(trace.header, scenes)
+    scene_id = trace.header.episode.scene_id
+    why = ""
+    try:
+        source.scene_file(scene_id)
+    except SceneError as error:
+        why = str(error)
+
+    def load() -> Scene:
+        return source.scene(scene_id)
+
+    return Opening(
+        header=trace.header,
+        exchanges=trace.exchanges,
+        footer=trace.footer,
+        trace_sha256=trace.sha256,
+        source=path.name,
+        scene=None if why else load,
+        no_scene=why,
+    )
+
+
+def _fork_recorded(
+    setting: Setting,
+    header: Header,
+    exchanges: Sequence[Exchange],
+    decision: int,
+    override: Override,
+) -> Run:
+    source = source_of_record(header, Path(setting.scenes) if setting.scenes else None)
+    live = Live(
+        source,
+        Worlds(source, WorldsConfig(header.profile)),
+        header.profile,
+        replace(setting, source="trace"),
+    )
+    return live.fork(header, exchanges, decision, override)
+
+
+def host_beyond(setting: Setting) -> str:
+    """Host outside this machine that pictures would go to; "" when they stay here."""
+    from urllib.parse import urlsplit
+
+    from app.gateway.doors import is_loopback
+
+    if not setting.ranker.startswith("openai"):
+        return ""
+    host = urlsplit(setting.ranker_options.get("base_url", "https://api.openai.com")).hostname or ""
+    return "" if is_loopback(host) else host
+
+
+def _fresh(stem: str) -> Path:
+    """A path for a new trace that no earlier one holds."""
+    number = 0
+    while True:
+        path = INSPECTED / f"{stem}.{number}.mcap"
+        part = path.with_name(f"{path.name}.part")
+        if not path.exists() and not part.exists():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            return path
+        number += 1

@@ -1,0 +1,76 @@
+"""`c2nav trace info|check|recover|export`: reading, judging, saving and converting traces."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+from rich.console import Console
+
+from app.commands.options import JsonOpt
+from app.commands.output import print_json
+from c2nav_engine.runner.recorded import open_trace
+from c2nav_engine.traces.check import check as faults_of
+from c2nav_engine.traces.recover import recover as salvage
+
+TracesArg = Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="TRACE…")]
+
+
+def info(traces: TracesArg, json: JsonOpt = False) -> int:
+    """What traces hold: episode, variant, ranker, outcome, topics, size."""
+    found: list[dict[str, object]] = []
+    for path in traces:
+        with open_trace(path) as trace:
+            found.append(
+                {
+                    "trace": str(path),
+                    "sha256": trace.sha256,
+                    "bytes": trace.file.size_bytes,
+                    "decisions": trace.decision_count,
+                    **dict(trace.file.facts),
+                }
+            )
+    if json:
+        print_json({"traces": found})
+        return 0
+    console = Console(highlight=False)
+    for facts in found:
+        for name, value in facts.items():
+            console.print(f"{name}: {value}", markup=False)
+        console.print()
+    return 0
+
+
+def check(traces: TracesArg, json: JsonOpt = False) -> int:
+    """Verify checksums, numbering, pictures and schema of traces."""
+    found = {str(path): [str(fault) for fault in faults_of(path)] for path in traces}
+    if json:
+        print_json({"faults": found})
+    else:
+        console = Console(highlight=False)
+        for path, faults in found.items():
+            console.print(
+                f"{path}: {'holds' if not faults else f'{len(faults)} faults'}", markup=False
+            )
+            for fault in faults:
+                console.print(f"  {fault}", markup=False)
+    return 1 if any(found.values()) else 0
+
+
+def recover(
+    trace: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="TRACE")],
+    out: Annotated[Path, tyro.conf.arg(metavar="TRACE", help="Where the intact part goes.")],
+    json: JsonOpt = False,
+) -> int:
+    """Save what is intact of an unfinished or damaged trace."""
+    saved = salvage(trace, out)
+    if json:
+        print_json({"trace": str(out), "saved": str(saved)})
+    else:
+        Console(highlight=False).print(f"{out}: {saved}", markup=False)
+    return 0
+
+
+trace = {"info": info, "check": check, "recover": recover}
+"""Subcommands of `c2nav trace`."""
