@@ -6,12 +6,13 @@ import multiprocessing
 from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from c2nav_engine.experiments.spec import Task
 from c2nav_engine.experiments.working import Finished, work
 
 
+@runtime_checkable
 class Executor(Protocol):
     """Runs tasks somewhere and hands back each as it finishes, in any order."""
 

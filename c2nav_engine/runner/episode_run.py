@@ -8,7 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.errors import InternalError, RankerUnavailable
@@ -23,6 +23,7 @@ from c2nav_engine.world.scene import Scene
 from c2nav_engine.world.surface import Surface
 
 
+@runtime_checkable
 class Recorder(Protocol):
     """Where exchanges go as they happen: a trace file, or nothing."""
 

@@ -7,7 +7,7 @@ and pictures; the truth goes to the record beside them.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float32
@@ -32,6 +32,7 @@ DEPTH_STRIDE = 4
 Depth = Float32[np.ndarray, "rows columns"]
 
 
+@runtime_checkable
 class Shell(Protocol):
     """Answers what the core asks of the body."""
 
@@ -48,6 +49,7 @@ GoalDistance = Callable[[Point], float]
 """Geodesic metres from a point to the goal; evaluation side only."""
 
 
+@runtime_checkable
 class Sensors(Protocol):
     """Noise between the world and what the robot believes; absent by default."""
 
