@@ -17,7 +17,6 @@ from c2nav_engine.runner.trace_views import Views
 from c2nav_engine.traces.attachments import LAYOUT_FILE, foxglove_layout
 from c2nav_engine.traces.contract_messages import pose_message
 from c2nav_engine.traces.pb.evaluation_pb2 import Evaluation
-from c2nav_engine.traces.reader import METADATA, STARTED
 from c2nav_engine.traces.topics import THUMBNAIL_TOPIC, log_time_ns
 from c2nav_engine.traces.writer import TraceFileWriter
 
@@ -34,12 +33,10 @@ class TraceWriter:
     """
 
     def __init__(self, path: Path, header: Header, *, fsync: bool = False) -> None:
-        self._facts = header_facts(header)
         self._places: Places = {}
         self._views = Views(header.profile)
         self._next = 0
-        self._file = TraceFileWriter(path, fsync=fsync)
-        self._file.describe(STARTED, self._facts)
+        self._file = TraceFileWriter(path, header_facts(header), fsync=fsync)
         for name, data in header_files(header).items():
             kind = "application/json" if name.endswith(".json") else "text/plain"
             self._file.attach(name, data, media_type=kind)
@@ -62,8 +59,7 @@ class TraceWriter:
 
     def finish(self, footer: Footer) -> str:
         """Complete the trace, give it its name and return its SHA-256."""
-        self._file.describe(METADATA, self._facts | footer_facts(footer))
-        return self._file.finish()
+        return self._file.finish(footer_facts(footer))
 
     def abandon(self) -> None:
         """Stop here and leave the `.part` for `recover`; idempotent."""

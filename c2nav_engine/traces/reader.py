@@ -18,11 +18,13 @@ from types import TracebackType
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 from mcap.opcode import Opcode
 from mcap.records import (
+    Attachment,
     AttachmentIndex,
     Channel,
     ChunkIndex,
     Footer,
     Message,
+    MessageIndex,
     Metadata,
     MetadataIndex,
     Schema,
@@ -42,13 +44,7 @@ from c2nav_engine.traces.records import (
     summary_crc_holds,
     walk,
 )
-from c2nav_engine.traces.topics import SCHEMA_VERSION
-
-METADATA = "c2nav"
-"""The metadata record of a finished trace."""
-
-STARTED = "c2nav.started"
-"""The same facts as far as they were known before the first step; what `recover` builds on."""
+from c2nav_engine.traces.topics import METADATA, SCHEMA_VERSION, rank_of
 
 CACHED_CHUNKS = 8
 """Opened chunks kept: a decision's pictures mostly share one."""
@@ -223,33 +219,42 @@ class TraceFile:
         return tuple(self._attachments)
 
     def attachment(self, name: str) -> bytes:
+        """One attached file's bytes; raises `TraceError` when there is none of that name."""
+        return self.attached(name).data
+
+    def attached(self, name: str) -> Attachment:
         """One attached file; raises `TraceError` when there is none of that name."""
         if name not in self._attachments:
             message = f"{self.path} has no attachment {name!r}; it has {list(self._attachments)}"
             raise TraceError(message)
         index = self._attachments[name]
-        return attachment_of(self._record(index.offset, index.length)).data
+        return attachment_of(self._record(index.offset, index.length))
 
     def messages(self, *topics: str) -> Iterator[Stored]:
-        """Messages of these topics (all when none is named), in the order they were written."""
-        for chunk in self.chunks(*topics):
-            yield from chunk
-
-    def chunks(self, *topics: str) -> Iterator[list[Stored]]:
-        """The same, chunk by chunk as it was written."""
+        """Messages of these topics (of all when none is named) by log time and topic rank."""
         wanted = set(topics or self._by_topic)
         channels = {key for key, channel in self._channels.items() if channel.topic in wanted}
-        for chunk in self._chunks:
-            if channels.intersection(chunk.message_index_offsets):
-                messages = self._messages_in(chunk)
-                yield [self._stored(each) for each in messages if each.channel_id in channels]
+        found = [
+            self._stored(message)
+            for chunk in self._chunks
+            if channels.intersection(chunk.message_index_offsets)
+            for message in self._messages_in(chunk)
+            if message.channel_id in channels
+        ]
+        found.sort(key=lambda stored: (stored.log_time_ns, rank_of(stored.topic)))
+        return iter(found)
 
     def times_ns(self, topic: str) -> list[int]:
-        """Log times of a topic's chunks, without reading them.
-
-        For a topic with one message an exchange, these are its messages' times.
-        """
-        return [chunk.message_start_time for chunk in self._by_topic.get(topic, [])]
+        """Log times of a topic's messages in order, from the index alone."""
+        keys = {key for key, channel in self._channels.items() if channel.topic == topic}
+        times_ns: list[int] = []
+        for chunk in self._by_topic.get(topic, []):
+            for key in keys.intersection(chunk.message_index_offsets):
+                offset = chunk.message_index_offsets[key]
+                length = PREFIX.unpack(self._read(offset, PREFIX.size))[1] + PREFIX.size
+                index = parse(MessageIndex.read, self._record(offset, length))
+                times_ns.extend(time_ns for time_ns, _ in index.records)
+        return times_ns
 
     def at(self, topic: str, log_time_ns: int) -> list[Stored]:
         """The messages of a topic with exactly this log time; reads one chunk."""

@@ -39,12 +39,24 @@ EXCHANGE_NS = 1_000
 """Exchanges within one step stay in order, and each log time names one exchange."""
 
 
-class Lane(enum.IntEnum):
-    """Which chunk of an exchange a message goes to, in the order they are written."""
+METADATA = "c2nav"
+"""The metadata record of a trace."""
 
-    PICTURES = 0
-    DEPTH = 1
-    FACTS = 2
+STARTED = "c2nav.started"
+"""The same facts as far as they were known before the first step; what `recover` builds on."""
+
+
+class Lane(enum.IntEnum):
+    """What is read together lies together; in the order in which a finished file holds them.
+
+    Words come first, so that a file cut short by a broken copy still tells the whole story.
+    """
+
+    FACTS = 0
+    DECISIONS = 1
+    THUMBNAILS = 2
+    PICTURES = 3
+    DEPTH = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,22 +83,30 @@ EXCHANGE_TOPICS = ("/control", "/decision", "/sketch", "/ladder")
 """Each exchange is one message on one of these."""
 
 TOPICS: dict[str, Topic] = {
-    **{topic: Topic(CompressedImage, Lane.PICTURES) for topic in PICTURE_TOPICS},
-    DEPTH_TOPIC: Topic(CompressedImage, Lane.DEPTH),
-    # Small, and asked for one by one by later questions: beside the look's facts.
-    THUMBNAIL_TOPIC: Topic(CompressedImage, Lane.FACTS),
+    # First what an exchange is, then what is known of it, then what illustrates it: messages of
+    # one log time are told in this order, so that a difference is named by its cause.
     "/control": Topic(Control, Lane.FACTS),
-    "/decision": Topic(Decision, Lane.FACTS),
+    "/decision": Topic(Decision, Lane.DECISIONS),
     "/sketch": Topic(Sketch, Lane.FACTS),
     "/ladder": Topic(Ladder, Lane.FACTS),
     "/eval": Topic(Evaluation, Lane.FACTS),
-    "/pose": Topic(PoseInFrame, Lane.FACTS),
-    "/tf": Topic(FrameTransforms, Lane.FACTS),
-    "/path": Topic(PosesInFrame, Lane.FACTS),
-    "/calibration": Topic(CameraCalibration, Lane.FACTS),
-    "/log": Topic(Log, Lane.FACTS),
     "/review": Topic(Review, Lane.FACTS),
+    **{topic: Topic(CompressedImage, Lane.PICTURES) for topic in PICTURE_TOPICS},
+    THUMBNAIL_TOPIC: Topic(CompressedImage, Lane.THUMBNAILS),
+    DEPTH_TOPIC: Topic(CompressedImage, Lane.DEPTH),
+    "/calibration": Topic(CameraCalibration, Lane.FACTS),
+    "/tf": Topic(FrameTransforms, Lane.FACTS),
+    "/pose": Topic(PoseInFrame, Lane.FACTS),
+    "/path": Topic(PosesInFrame, Lane.FACTS),
+    "/log": Topic(Log, Lane.FACTS),
 }
+
+_RANKS = {topic: rank for rank, topic in enumerate(TOPICS)}
+
+
+def rank_of(topic: str) -> int:
+    """Place of a topic among messages of one log time."""
+    return _RANKS.get(topic, len(_RANKS))
 
 
 def log_time_ns(step: int, exchange: int) -> int:

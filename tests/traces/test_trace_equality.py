@@ -75,7 +75,7 @@ def test_another_pixel_is_a_difference(tmp_path: Path) -> None:
     other = fake_episode(4, seed=1, side_px=16)
     found = compared(tmp_path, lambda each: each, other=other)
     assert found is not None
-    assert (found.topic, found.field) == ("/view/left", "data")
+    assert (found.topic, found.field) == ("/control", "look.views[0].picture")
 
 
 @pytest.mark.parametrize("purpose", ["elect", "glance"])

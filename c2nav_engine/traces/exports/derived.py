@@ -10,9 +10,10 @@ from c2nav_engine.contract.outcome import Answered
 from c2nav_engine.errors import UsageError
 from c2nav_engine.traces.contract_messages import outcome_message, outcome_of
 from c2nav_engine.traces.pb import common_pb2, review_pb2
-from c2nav_engine.traces.reader import METADATA, STARTED, TraceFile
-from c2nav_engine.traces.topics import IMAGE_TOPICS
-from c2nav_engine.traces.writer import Outgoing, TraceFileWriter
+from c2nav_engine.traces.reader import TraceFile
+from c2nav_engine.traces.settle import settle
+from c2nav_engine.traces.topics import IMAGE_TOPICS, METADATA, STARTED
+from c2nav_engine.traces.writer import Outgoing, stored_message
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,11 +88,8 @@ def export_redacted(trace: TraceFile, out: Path) -> str:
 
 def reviews_of(trace: TraceFile) -> list[Review]:
     """The reviews in a merged trace, in its order."""
-    return [
-        _review_of(review_pb2.Review.FromString(stored.data))
-        for stored in trace.messages("/review")
-        if stored.topic == "/review"
-    ]
+    messages = trace.messages("/review")
+    return [_review_of(review_pb2.Review.FromString(stored.data)) for stored in messages]
 
 
 def _derive(
@@ -105,19 +103,17 @@ def _derive(
     if out.resolve() == trace.path.resolve():
         message = f"expected another file for the new trace, came {out} for both"
         raise UsageError(message)
-    with TraceFileWriter(out) as writer:
-        writer.describe(STARTED, trace.metadata(STARTED))
-        for name in trace.attachments:
-            kind = "application/json" if name.endswith(".json") else "text/plain"
-            writer.attach(name, trace.attachment(name), media_type=kind)
-        for chunk in trace.chunks():
-            kept = [stored for stored in chunk if stored.topic not in without]
-            if kept:
-                writer.copy(kept)
-        if extra:
-            writer.append(extra)
-        writer.describe(METADATA, {**trace.facts, **facts})
-        return writer.finish()
+    kept = [stored for stored in trace.messages() if stored.topic not in without]
+    added = [stored_message(outgoing, number) for number, outgoing in enumerate(extra)]
+    return settle(
+        [*kept, *added],
+        out,
+        attachments=[trace.attached(name) for name in trace.attachments],
+        metadata={
+            STARTED: trace.metadata(STARTED),
+            METADATA: {**trace.facts, **facts},
+        },
+    )
 
 
 def _review_message(review: Review) -> review_pb2.Review:

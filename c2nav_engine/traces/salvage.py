@@ -1,0 +1,105 @@
+"""Everything intact in a file, finished or not, by one linear read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, Message, Metadata, Schema
+
+from c2nav_engine.errors import TraceError
+from c2nav_engine.traces.records import (
+    MAGIC,
+    Record,
+    Stored,
+    attachment_of,
+    chunk_records,
+    parse,
+    walk,
+)
+
+
+@dataclass(slots=True)
+class Salvaged:
+    """What a file holds.
+
+    Attributes:
+        messages: In file order.
+        attachments: In file order.
+        metadata: By name; the last one of a name counts.
+        damaged: Records left out because their CRC did not hold or they made no sense.
+        end: First byte after the last whole record.
+        finished: Whether the data section had been closed.
+    """
+
+    messages: list[Stored] = field(default_factory=list[Stored])
+    attachments: list[Attachment] = field(default_factory=list[Attachment])
+    metadata: dict[str, dict[str, str]] = field(default_factory=dict[str, dict[str, str]])
+    damaged: int = 0
+    end: int = len(MAGIC)
+    finished: bool = False
+
+
+def salvage(data: bytes) -> Salvaged:
+    """Read a file's bytes as far as they go; damage costs only the record it hit."""
+    reading = _Reading()
+    for record in walk(data):
+        # A finished file repeats its channels at the end: they outlive the chunk that held them.
+        if record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+            reading.name(record)
+    for record in walk(data):
+        reading.found.end = record.end
+        try:
+            reading.take(record)
+        except TraceError:
+            reading.found.damaged += 1
+    return reading.found
+
+
+@dataclass(slots=True)
+class _Reading:
+    found: Salvaged = field(default_factory=Salvaged)
+    schemas: dict[int, Schema] = field(default_factory=dict[int, Schema])
+    channels: dict[int, Channel] = field(default_factory=dict[int, Channel])
+
+    def name(self, record: Record) -> None:
+        """Learn a schema or a channel of the index."""
+        if record.opcode == Opcode.SCHEMA:
+            schema = parse(Schema.read, record)
+            self.schemas[schema.id] = schema
+        else:
+            channel = parse(Channel.read, record)
+            self.channels[channel.id] = channel
+
+    def take(self, record: Record) -> None:
+        """Read one record of the data section."""
+        if record.opcode == Opcode.CHUNK:
+            self._chunk(record)
+        elif record.opcode == Opcode.ATTACHMENT:
+            self.found.attachments.append(attachment_of(record))
+        elif record.opcode == Opcode.METADATA:
+            metadata = parse(Metadata.read, record)
+            self.found.metadata[metadata.name] = metadata.metadata
+        elif record.opcode == Opcode.DATA_END:
+            self.found.finished = True
+
+    def _chunk(self, record: Record) -> None:
+        for inner in chunk_records(record):
+            if isinstance(inner, Schema):
+                self.schemas[inner.id] = inner
+            elif isinstance(inner, Channel):
+                self.channels[inner.id] = inner
+            elif inner.channel_id in self.channels:
+                self.found.messages.append(self._stored(inner))
+
+    def _stored(self, message: Message) -> Stored:
+        channel = self.channels[message.channel_id]
+        schema = self.schemas[channel.schema_id]
+        return Stored(
+            channel.topic,
+            schema.name,
+            schema.data,
+            message.sequence,
+            message.log_time,
+            message.data,
+        )
