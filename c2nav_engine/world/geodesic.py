@@ -17,7 +17,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from c2nav_engine.geometry import Point
-from c2nav_engine.world.walkable_compiled import compiled
+from c2nav_engine.world.compiled import compiled
 from c2nav_engine.world.walkable_places import places
 from c2nav_engine.world.walkable_spans import NONE, Cells, Place, Spans
 from c2nav_engine.world.walkable_walk import column_of, inside, walk

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float
 
-from c2nav_engine.world.walkable_compiled import compiled
+from c2nav_engine.world.compiled import compiled
 from c2nav_engine.world.walkable_spans import NONE, Spans
 
 _LEVEL_M = 0.02  # cells of one rectangle differ by no more

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Bool, Int
 
-from c2nav_engine.world.walkable_compiled import compiled
+from c2nav_engine.world.compiled import compiled
 from c2nav_engine.world.walkable_raster import OpenSpans
 from c2nav_engine.world.walkable_spans import DIRECTIONS_X, DIRECTIONS_Z, NONE, Spans
 

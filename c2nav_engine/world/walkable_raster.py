@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from c2nav_engine.errors import SceneError
-from c2nav_engine.world.walkable_compiled import compiled
+from c2nav_engine.world.compiled import compiled
 
 _Pieces = Float[np.ndarray, "_ 3"]
 _Polygon = Float[np.ndarray, "_ 3"]

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from jaxtyping import Float, Int
 
-from c2nav_engine.world.walkable_compiled import compiled
+from c2nav_engine.world.compiled import compiled
 from c2nav_engine.world.walkable_spans import DIRECTIONS_X, DIRECTIONS_Z, NONE, Cells, Spans
 
 _TIE = 1e-9
