@@ -1,1 +1,1 @@
-"""Deterministic and metric: fan, vetting, bundles, gates, vetoes, return path. Never asks a model."""
+"""Deterministic, metric: fan, vetting, bundles, gates, vetoes, return path; never asks a model."""

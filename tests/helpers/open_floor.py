@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 from c2nav_engine.contract.outcome import Abstention, Answered, Cardinal, Ordering
 from c2nav_engine.contract.question import Picture, Slot
@@ -35,8 +36,11 @@ from c2nav_engine.navigator.requests import (
 from c2nav_engine.navigator.state import Ending, Task
 from c2nav_engine.navigator.variants import preset
 
+R = TypeVar("R", bound=Record)
 Answers = Callable[[Ask], Answered]
 NO_ANSWER = Abstention("cannot tell")
+PLAUSIBLE = DepthStats(3.0, 0.0)
+ORIGIN = Pose((0.0, 0.0, 0.0), 0.0)
 
 
 def picture(name: str) -> Picture:
@@ -58,9 +62,9 @@ class Floor:
     free_m: dict[str, float] = field(default_factory=dict)
     free: Callable[[str, float], float] | None = None
     collide_at: frozenset[int] = frozenset()
-    depth: DepthStats = DepthStats(3.0, 0.0)
-    ring_depth: DepthStats = DepthStats(3.0, 0.0)
-    pose: Pose = Pose((0.0, 0.0, 0.0), 0.0)
+    depth: DepthStats = PLAUSIBLE
+    ring_depth: DepthStats = PLAUSIBLE
+    pose: Pose = ORIGIN
     steps: int = 0
     forwards: int = 0
     looks: int = 0
@@ -123,7 +127,7 @@ class Tale:
     def asked(self, slot: Slot) -> list[Ask]:
         return [ask for ask, _ in self.answers if ask.question.slot is slot]
 
-    def records(self, kind: type[Record]) -> list:
+    def records(self, kind: type[R]) -> list[R]:
         notes = [r.record for r in self.requests if isinstance(r, Note)]
         return [record for record in notes if isinstance(record, kind)]
 
@@ -206,7 +210,7 @@ def prefer(**winners: str | Answered) -> Answers:
     return answer
 
 
-def each(**scripts: list[str | Answered]) -> Answers:
+def each(**scripts: Sequence[str | Answered]) -> Answers:
     """Answers by slot, one after the other; the last one of a list repeats."""
     left = {slot: list(script) for slot, script in scripts.items()}
 

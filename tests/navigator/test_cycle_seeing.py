@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 from c2nav_engine.contract.outcome import Abstention, Cardinal, Invalid, Ordering, Tie
 from c2nav_engine.contract.question import Orders, Slot
@@ -88,7 +89,7 @@ def test_too_little_displacement_over_four_cycles_leads_to_a_glance():
 def test_no_second_glance_within_two_cycles_unless_nothing_survives():
     tale = drive(task(), prefer(seeing=Abstention("cannot tell"), glance="sector0"), asks=12)
     cycles = [event.cycle for event in tale.events("glance")]
-    assert min(b - a for a, b in zip(cycles, cycles[1:], strict=False)) > 2
+    assert min(b - a for a, b in pairwise(cycles)) > 2
 
 
 def test_a_collision_blocks_its_heading_until_half_a_metre_is_travelled():
