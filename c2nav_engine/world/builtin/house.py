@@ -11,8 +11,8 @@ from c2nav_engine.world.builtin import style
 from c2nav_engine.world.builtin.colours import Colours
 from c2nav_engine.world.builtin.floors import (
     ceiling_solids,
-    floor_solids,
     flight_of,
+    floor_solids,
     stair_solids,
 )
 from c2nav_engine.world.builtin.furniture.catalogue import model

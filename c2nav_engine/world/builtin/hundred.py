@@ -6,6 +6,7 @@ Run as a module to write the stored file anew after a change to houses or wordin
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -21,7 +22,7 @@ from c2nav_engine.world.builtin.houses import PLANS
 from c2nav_engine.world.builtin.plan import Plan
 from c2nav_engine.world.builtin.routes import Route, RouteSampler
 from c2nav_engine.world.builtin.source import EPISODES_FILE
-from c2nav_engine.world.builtin.wording import Told, nameable_target, tell
+from c2nav_engine.world.builtin.wording import Told, tell
 from c2nav_engine.world.surface import Surface
 from c2nav_engine.world.walkable import build_surface
 
@@ -73,20 +74,24 @@ def _told_routes(
     house: House, surface: Surface, random: np.random.Generator
 ) -> Iterator[tuple[Route, Told, Pose]]:
     """Routes with words, spread over goals, starts and lengths."""
-    goals: list[tuple[str, str]] = []
-    pairs: list[tuple[str, str]] = []
-    for route in RouteSampler(house, surface, random).draw(6000):
+    goals: set[tuple[str, str]] = set()
+    pairs: Counter[tuple[str, str]] = Counter()
+    for route in RouteSampler(house, surface, random).draw():
         goal = (route.target.room, route.target.phrase)
         pair = (route.visits[0].room.letter, route.target.room)
-        if not nameable_target(house, route) or goal in goals or pairs.count(pair) > 1:
+        if goal in goals or pairs[pair] >= 2 or random.random() > _wanted(route):
             continue
         start = _start(route, random)
         told = tell(house, route, start.yaw_rad, random)
-        if told is None or pairs.count(pair) * 40 > len(goals) * 40:
-            continue
-        goals.append(goal)
-        pairs.append(pair)
-        yield route, told, start
+        if told is not None:
+            goals.add(goal)
+            pairs[pair] += 1
+            yield route, told, start
+
+
+def _wanted(route: Route) -> float:
+    """Probability of keeping a route: short ones through two rooms are plentiful and dull."""
+    return min(1.0, (route.geodesic_m - 2.0) / 7.0) * (0.5 if len(route.visits) == 2 else 1.0)
 
 
 def _start(route: Route, random: np.random.Generator) -> Pose:

@@ -130,7 +130,7 @@ _BOX_TRIANGLES = (
 def box(look: Look, size: Vector, base: Vector = (0.0, 0.0, 0.0)) -> Solid:
     """A box of (width, height, depth) that stands centred on `base`."""
     half = np.array(size) / 2.0
-    centre = np.array(base) + (0.0, half[1], 0.0)
+    centre = np.array((base[0], base[1] + half[1], base[2]))
     return Solid(look, _BOX_CORNERS * half + centre, _BOX_TRIANGLES)
 
 

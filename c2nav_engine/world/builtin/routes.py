@@ -10,13 +10,16 @@ import numpy as np
 from jaxtyping import Float
 
 from c2nav_engine.geometry import Point, wrap_rad
+from c2nav_engine.world.builtin.furniture.catalogue import FLAT
 from c2nav_engine.world.builtin.house import House
+from c2nav_engine.world.builtin.naming import can_be_named
 from c2nav_engine.world.builtin.placement import Item
 from c2nav_engine.world.builtin.plan import Layout, Room, Wall
 from c2nav_engine.world.surface import Surface
 
 SHORTEST_M, LONGEST_M = 4.0, 17.0
 _FINE_M = 0.05
+_STARTS = 5
 _CLEARANCE_M = 0.3
 """Starts and goals keep this distance from everything, so that a first step can go anywhere."""
 
@@ -113,20 +116,30 @@ class RouteSampler:
         self._surface = surface
         self._random = random
 
-    def draw(self, tries: int = 400) -> Iterator[Route]:
-        """Routes of the wanted length through two to five rooms."""
+    def draw(self, rounds: int = 40) -> Iterator[Route]:
+        """Routes of the wanted length through two to five rooms.
+
+        Several starts are tried for one goal in a row: distances to a goal are solved once.
+        """
         rooms = [room for room in self._house.layout.rooms if room.kind != "stairs"]
         sizes = np.array([math.sqrt(room.area) for room in rooms])
-        for _ in range(tries):
-            room = rooms[int(self._random.choice(len(rooms), p=sizes / sizes.sum()))]
-            start = self._free_point(room)
-            target = self._house.items[int(self._random.integers(len(self._house.items)))]
-            goal = self._before(target)
-            if start is None or goal is None or target.room == room.letter:
-                continue
-            route = self._route(start, goal, target)
-            if route is not None:
-                yield route
+        targets = [item for item in self._house.items if can_be_reached(self._house, item)]
+        for _ in range(rounds):
+            for index in self._random.permutation(len(targets)):
+                target = targets[int(index)]
+                goal = self._before(target)
+                if goal is None:
+                    continue
+                for pick in self._random.choice(len(rooms), _STARTS, p=sizes / sizes.sum()):
+                    route = self._from(rooms[int(pick)], goal, target)
+                    if route is not None:
+                        yield route
+
+    def _from(self, room: Room, goal: Point, target: Item) -> Route | None:
+        start = self._free_point(room) if room.letter != target.room else None
+        if start is None or not SHORTEST_M / 2 < math.dist(start, goal) < LONGEST_M:
+            return None
+        return self._route(start, goal, target)
 
     def _route(self, start: Point, goal: Point, target: Item) -> Route | None:
         corners = self._surface.path(start, goal)
@@ -177,6 +190,11 @@ class RouteSampler:
             if near is None or not _same_place(near, beside):
                 return None
         return found
+
+
+def can_be_reached(house: House, item: Item) -> bool:
+    """Whether a thing may stand at the end of a route: its words say which one is meant."""
+    return item.kind not in FLAT and can_be_named(house, item)
 
 
 def _same_place(found: Point, wanted: Point) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 
@@ -31,56 +31,56 @@ class Finishes:
     feature: Look
 
 
-@lru_cache(maxsize=None)
+@cache
 def _plain_wall(name: str) -> Look:
     return look_of(f"{name} wall", textures.plaster(WALLS[name]), tile_m=2.0)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _boards(name: str) -> Look:
     return look_of(f"{name} boards", textures.planks(WOODS[name]), tile_m=1.6)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _parquet(name: str) -> Look:
     return look_of(f"{name} parquet", textures.herringbone(WOODS[name]), tile_m=1.2)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _carpet(name: str) -> Look:
     rgb = mix(COLOURS[name], (200, 192, 182), 0.45)
     return look_of(f"{name} carpet", textures.carpet(rgb), tile_m=0.7)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _tiled(name: str, count: int) -> Look:
     return look_of(f"{name} tiles", textures.tiles(COLOURS[name], count=count), tile_m=1.4)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _chequered(name: str) -> Look:
     picture = textures.tiles(COLOURS["cream"], count=4, second=COLOURS[name])
     return look_of(f"{name} chequered tiles", picture, tile_m=1.6)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _striped(name: str) -> Look:
     base = WALLS[name]
     return look_of(f"{name} stripes", textures.stripes(base, shade(base, 0.87)), tile_m=1.0)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _dotted(name: str) -> Look:
     base = WALLS[name]
     return look_of(f"{name} dots", textures.dots(shade(base, 0.9), shade(base, 1.08)), tile_m=0.8)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _bricks() -> Look:
     return look_of("brick wall", textures.brick((172, 96, 76)), tile_m=1.1)
 
 
-@lru_cache(maxsize=None)
+@cache
 def outside_look(name: str) -> Look:
     """Look of the outer walls by the plan's word."""
     if name == "brick":
@@ -90,7 +90,7 @@ def outside_look(name: str) -> Look:
     return look_of("render", textures.plaster((224, 216, 202)), tile_m=2.0)
 
 
-@lru_cache(maxsize=None)
+@cache
 def ceiling() -> Look:
     """White paint."""
     picture = textures.plain((238, 236, 230))

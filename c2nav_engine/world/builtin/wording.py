@@ -6,6 +6,7 @@ their side, rooms by name. A text is kept only when the route parser finds exact
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ import numpy as np
 
 from c2nav_engine.contract.route import parse_english
 from c2nav_engine.world.builtin.house import House
-from c2nav_engine.world.builtin.landmarks import Landmark, can_be_named, passed
+from c2nav_engine.world.builtin.landmarks import passed
 from c2nav_engine.world.builtin.routes import Route, Visit
 
 _SLIGHT_RAD, _CLEAR_RAD = math.radians(32.0), math.radians(58.0)
@@ -22,7 +23,12 @@ _INSIDE_M = 0.4
 """A leg into a room ends this far behind its door."""
 _LAST_M = 1.6
 """Length of the last leg where the way through the last room is long enough to be split."""
-_FEWEST_WORDS, _MOST_WORDS = 15, 38
+_FEWEST_WORDS, _MOST_WORDS = 14, 33
+_WAYS: dict[str, tuple[str, ...]] = {
+    "hallway": ("down", "along", "down"),
+    "landing": ("along", "across"),
+}
+"""How one moves through rooms that are ways themselves; any other room is crossed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,22 +74,22 @@ def tell(
 
 
 def _rising(ends_m: tuple[float, ...]) -> bool:
-    return all(b - a > 0.5 for a, b in zip((0.0, *ends_m), ends_m, strict=False))
+    return all(b - a > 0.5 for a, b in itertools.pairwise((0.0, *ends_m)))
 
 
 def _sentences(legs: Sequence[str], random: np.random.Generator) -> str:
-    """Join clauses into one to three sentences."""
+    """Join clauses into one to four sentences."""
     text = legs[0][0].upper() + legs[0][1:]
     for index, leg in enumerate(legs[1:], 1):
         last = index == len(legs) - 1
         choice = float(random.random())
-        if last and choice < 0.45:
+        # "…, and turn left and …" reads badly: what begins with a turn begins a sentence.
+        turning = leg.startswith("turn")
+        if last and not turning and choice < 0.5:
             text += f" and {leg}"
         elif choice < 0.3:
             text += f", then {leg}"
-        elif choice < 0.42 and not last:
-            text += f", and {leg}"
-        elif choice < 0.6:
+        elif choice < 0.45:
             text += f". Then {leg}"
         else:
             text += f". {leg[0].upper()}{leg[1:]}"
@@ -106,123 +112,104 @@ class _Teller:
         index = 1
         while index < len(visits) - 1:
             visit, following = visits[index], visits[index + 1]
-            merged = following.room.kind == "stairs" and visit.length_m < 2.6
-            if merged:
-                text = _turned(visit.turn_rad, self._stairs(following, visits[index + 2]))
-                legs.append(Leg(text, following.leave_m + _INSIDE_M))
+            if following.room.kind == "stairs" and visit.length_m < 2.6:
+                # A few steps to the stairs are no leg of their own.
+                text = self._stairs(following, visits[index + 2])
+                legs.append(Leg(_turned(visit.turn_rad, text), following.leave_m + _INSIDE_M))
                 index += 2
-                continue
-            legs.append(self._middle(visit, following, visits, index))
-            index += 1
+            else:
+                legs.append(self._middle(visit, following))
+                index += 1
         return legs + self._last(visits[-1])
 
     def _one_of(self, *choices: str) -> str:
         return choices[int(self._random.integers(len(choices)))]
 
     def _first(self, visit: Visit, following: Visit, heading_rad: float) -> Leg:
-        start_rad = self._route.trail.bearing_rad(0.0, 1.0)
-        away = math.remainder(start_rad - heading_rad, math.tau)
-        room, into = visit.room.name, following.room.name
-        passage = _passage(following)
-        choices = [
-            f"walk out of the {room} into the {into}",
-            f"leave the {room} and enter the {into}"
-            if False
-            else f"leave the {room} for the {into}",
-            f"go from the {room} into the {into}",
-            f"exit the {room} into the {into}",
-        ]
-        if passage:
-            choices += [
-                f"go through the {passage} into the {into}",
-                f"take the {passage} out of the {room} into the {into}",
-            ]
-        if following.room.kind == "stairs":
-            choices = [f"walk out of the {room} to the stairs", f"go to the stairs"]
-        text = self._one_of(*choices)
-        if visit.length_m > 2.2 and self._random.random() < 0.7:
-            text += self._beside(visit, 1)
+        away = math.remainder(self._route.trail.bearing_rad(0.0, 1.0) - heading_rad, math.tau)
+        if visit.room.kind in _WAYS and visit.length_m > 2.5:
+            text = self._along(visit, following)
+        else:
+            text = self._out_of(visit, following)
         if abs(away) > math.radians(140.0):
-            text = self._one_of(f"turn around and {text}", f"turn around, and {text}")
+            text = f"turn around and {text}"
         elif abs(away) > math.radians(50.0):
             side = "left" if away > 0 else "right"
             text = self._one_of(f"turn {side} and {text}", f"turn to your {side} and {text}")
-        elif abs(away) < math.radians(25.0) and self._random.random() < 0.3:
-            text = f"go straight ahead and {text}"
-        return Leg(text, visit.leave_m + min(_INSIDE_M, 0.5 * following.length_m))
+        return Leg(text, _end_of(visit, following))
 
-    def _middle(self, visit: Visit, following: Visit, visits: Sequence[Visit], index: int) -> Leg:
-        room, into = visit.room, following.room
-        end_m = visit.leave_m + min(_INSIDE_M, 0.5 * following.length_m)
-        if room.kind == "stairs":
+    def _out_of(self, visit: Visit, following: Visit) -> str:
+        """Words for leaving the first room."""
+        room = visit.room.name
+        if following.room.kind == "stairs":
+            return self._one_of("walk to the stairs", "go to the foot of the stairs")
+        into = _into(following)
+        beside = ""
+        if visit.length_m > 2.2 and self._random.random() < 0.8:
+            beside = self._beside(visit, 1)
+        choices = [f"walk out of the {room} {into}", f"exit the {room} {into}"]
+        if beside:
+            choices = [f"walk{beside} and {into}", f"go{beside} and {into}"]
+        elif following.entry is not None and _passage(following):
+            way = _passage(following)
+            choices += [
+                f"go through the {way} {into}",
+                f"leave the {room} through the {way} {into}",
+            ]
+        return self._one_of(*choices)
+
+    def _middle(self, visit: Visit, following: Visit) -> Leg:
+        end_m = _end_of(visit, following)
+        if visit.room.kind == "stairs":
             return Leg(self._stairs(visit, following), end_m)
-        if visit.length_m < 2.3:
-            straight = abs(visit.turn_rad) < _SLIGHT_RAD
-            if into.kind == "stairs":
-                text = f"go to the stairs"
-            elif straight:
-                text = self._one_of(
-                    f"cross the {room.name} into the {into.name}",
-                    f"go straight across the {room.name} into the {into.name}",
-                )
-            else:
-                text = self._one_of(f"enter the {into.name}", f"go into the {into.name}")
-                text += self._exit_side(visit)
-            return Leg(_turned(visit.turn_rad, text), end_m)
-        verb = self._one_of("walk", "go", "continue", "head", "move", "walk")
-        way = "through"
-        if room.kind in {"hallway", "landing"}:
-            way = self._one_of("down", "along", "down") if room.kind == "hallway" else "along"
-        elif room.kind not in {"bathroom"}:
-            way = self._one_of("through", "across")
-        text = f"{verb} {way} the {room.name}"
-        text += self._beside(visit, 2 if visit.length_m > 5.0 else 1)
-        if into.kind == "stairs":
-            text += self._one_of(" to the stairs", " to the foot of the stairs")
+        if visit.length_m >= 2.3:
+            return Leg(_turned(visit.turn_rad, self._along(visit, following)), end_m)
+        if following.room.kind == "stairs":
+            text = "go to the stairs"
+        elif abs(visit.turn_rad) < _SLIGHT_RAD:
+            text = self._one_of("cross", "go straight across", "walk straight across")
+            text += f" the {visit.room.name} {_into(following)}"
         else:
-            text += self._one_of(f" into the {into.name}", f" and into the {into.name}")
-            text += self._exit_side(visit)
+            text = self._one_of("go", "walk") + f" {_into(following)}" + self._exit_side(visit)
         return Leg(_turned(visit.turn_rad, text), end_m)
+
+    def _along(self, visit: Visit, following: Visit) -> str:
+        """Words for the way through a room or corridor to the next one."""
+        verb = self._one_of("walk", "go", "continue", "head", "walk")
+        ways = _WAYS.get(visit.room.kind, ("through", "across"))
+        text = f"{verb} {self._one_of(*ways)} the {visit.room.name}"
+        beside = self._beside(visit, 2 if visit.length_m > 4.5 else 1)
+        if following.room.kind == "stairs":
+            return text + beside + self._one_of(" to the stairs", " to the foot of the stairs")
+        joint = " and " if beside else " "
+        return text + beside + joint + _into(following) + self._exit_side(visit)
 
     def _stairs(self, visit: Visit, following: Visit) -> str:
         trail = self._route.trail
         upward = trail.at(visit.leave_m)[1] > trail.at(visit.enter_m)[1]
-        to = following.room.name
-        if upward:
-            return self._one_of(
-                f"climb the stairs to the {to}",
-                f"walk up the stairs to the {to}",
-                f"go up the stairs to the {to}",
-            )
-        return self._one_of(f"go down the stairs to the {to}", f"walk down the stairs to the {to}")
+        verbs = ("climb", "walk up", "go up") if upward else ("go down", "walk down", "descend")
+        return f"{self._one_of(*verbs)} the stairs to the {following.room.name}"
 
     def _exit_side(self, visit: Visit) -> str:
         side_rad = visit.exit_side_rad
         if abs(side_rad) > _CLEAR_RAD:
             side = "left" if side_rad > 0 else "right"
             return self._one_of(f" on your {side}", f" on the {side}")
-        if abs(side_rad) < _SLIGHT_RAD and self._random.random() < 0.4:
-            return self._one_of(" straight ahead", " ahead of you")
+        if abs(side_rad) < _SLIGHT_RAD and self._random.random() < 0.3:
+            return " straight ahead"
         return ""
 
     def _last(self, visit: Visit) -> list[Leg]:
         trail, target = self._route.trail, self._route.target
-        hung = target.top_m > 1.3 and target.bottom_m > 0.5
-        stop = self._one_of("stop", "stop", "wait", "stop")
-        where = (
-            self._one_of("in front of", "in front of", "facing")
-            if hung
-            else self._one_of("in front of", "next to", "beside", "by", "at")
-        )
-        if where == "facing":
-            where = "in front of"
-        stopping = f"{stop} {where} the {target.phrase}"
+        verb = self._one_of("stop", "stop", "stop", "wait")
+        where = "in front of"
+        if target.bottom_m == 0.0:
+            where = self._one_of("in front of", "in front of", "next to", "beside", "by")
+        stopping = f"{verb} {where} the {target.phrase}"
         if visit.length_m < 3.6:
             return [Leg(_turned(visit.turn_rad, stopping), trail.length_m)]
         verb = self._one_of("walk", "go", "continue", "head")
-        way = self._one_of("across", "through")
-        if visit.room.kind in {"hallway", "landing"}:
-            way = self._one_of("down", "along")
+        way = self._one_of(*_WAYS.get(visit.room.kind, ("across", "through")))
         text = f"{verb} {way} the {visit.room.name}" + self._beside(visit, 2)
         return [
             Leg(_turned(visit.turn_rad, text), trail.length_m - _LAST_M),
@@ -236,19 +223,19 @@ class _Teller:
             for each in passed(self._house, self._route.trail, visit)
             if each.item.phrase not in self._told
         ]
-        chosen = sorted(fresh[:most], key=lambda each: each.along_m)
-        if not chosen:
+        if not fresh or self._random.random() < 0.12:
             return ""
+        beside = [each for each in fresh if each.side] or fresh[:1]
+        chosen = sorted(beside[:most], key=lambda each: each.along_m)
         self._told |= {each.item.phrase for each in chosen}
-        if len(chosen) == 1 and chosen[0].side and self._random.random() < 0.25:
-            return f" with the {_with_side(chosen[0])}"
-        opening = self._one_of(" past ", " past ", ", passing ")
-        return opening + " and ".join(f"the {_with_side(each)}" for each in chosen)
-
-
-def _with_side(landmark: Landmark) -> str:
-    side = f" on your {landmark.side}" if landmark.side else ""
-    return f"{landmark.item.phrase}{side}"
+        if not chosen[0].side:
+            return f" over the {chosen[0].item.phrase}"
+        if len(chosen) == 2 and chosen[0].side == chosen[1].side:
+            names = " and ".join(f"the {each.item.phrase}" for each in chosen)
+            return f" past {names} on your {chosen[0].side}"
+        return " past " + " and ".join(
+            f"the {each.item.phrase} on your {each.side}" for each in chosen
+        )
 
 
 def _turned(turn_rad: float, text: str) -> str:
@@ -261,14 +248,18 @@ def _turned(turn_rad: float, text: str) -> str:
     return text
 
 
+def _end_of(visit: Visit, following: Visit) -> float:
+    return visit.leave_m + min(_INSIDE_M, 0.5 * following.length_m)
+
+
+def _into(visit: Visit) -> str:
+    """Words for entering a room."""
+    return f"{'onto' if visit.room.kind == 'landing' else 'into'} the {visit.room.name}"
+
+
 def _passage(visit: Visit) -> str:
     """What one walks through into a room; "" where there is no wall."""
     if visit.entry is None or visit.entry.kind == "open":
         return ""
     kinds = {opening.kind for opening in visit.entry.openings if opening.bottom_m == 0.0}
     return "archway" if "arch" in kinds else "doorway"
-
-
-def nameable_target(house: House, route: Route) -> bool:
-    """Whether the goal's words mean one thing only in its room."""
-    return can_be_named(house, route.target)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache
 
 from c2nav_engine.world.builtin.furniture import decor, kitchen, seats, storage, tables
 from c2nav_engine.world.builtin.furniture.model import Maker, Model, Tones, model_of
@@ -110,7 +110,7 @@ PHRASES: dict[str, str] = {kind: f"{{colour}} {kind}" for kind in _NAMED_BY_COLO
 """What instructions call a thing where the bare noun is not it; the rest goes by its noun."""
 
 
-@lru_cache(maxsize=None)
+@cache
 def model(kind: str, tones: Tones) -> Model:
     """The finished model of one kind in these tones."""
     return model_of(MAKERS[kind](tones))
