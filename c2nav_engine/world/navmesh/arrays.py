@@ -5,15 +5,13 @@ Polygons of all tiles are numbered through in file order. The plane is X–Z; he
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from c2nav_engine.world.navmesh.cursor import Records
 from c2nav_engine.world.navmesh.tile import MAX_CORNERS
-
-Records = Any
-"""An array of compiled code, or one record of it; its fields stand beside its dtype."""
 
 POLYGON = np.dtype(
     [

@@ -15,6 +15,7 @@ from c2nav_engine.world.navmesh.arrays import (
     TRIANGLE,
     WALL,
     MeshArrays,
+    Records,
 )
 from c2nav_engine.world.navmesh.file import NavMeshFile
 from c2nav_engine.world.navmesh.islands import label_islands
@@ -62,7 +63,7 @@ def _cell(tile: Tile) -> tuple[int, int]:
     return int(tile.header["y"]), int(tile.header["x"])
 
 
-def _polygons(tile: Tile, base: int) -> NDArray[np.void]:
+def _polygons(tile: Tile, base: int) -> Records:
     source = tile.polygons
     records = np.zeros(len(source), POLYGON)
     count = np.where(tile.ground, source["corner_count"], 0).astype(np.int64)
@@ -80,8 +81,8 @@ def _polygons(tile: Tile, base: int) -> NDArray[np.void]:
     return records
 
 
-def _all_triangles(tiles: tuple[Tile, ...], polygons: NDArray[np.void]) -> NDArray[np.void]:
-    parts: list[NDArray[np.void]] = []
+def _all_triangles(tiles: tuple[Tile, ...], polygons: Records) -> Records:
+    parts: list[Records] = []
     counts: list[NDArray[np.int64]] = []
     first = 0
     for tile in tiles:
@@ -96,9 +97,7 @@ def _all_triangles(tiles: tuple[Tile, ...], polygons: NDArray[np.void]) -> NDArr
     return np.concatenate(parts)
 
 
-def _triangles(
-    tile: Tile, points: NDArray[np.float32]
-) -> tuple[NDArray[np.void], NDArray[np.int64]]:
+def _triangles(tile: Tile, points: NDArray[np.float32]) -> tuple[Records, NDArray[np.int64]]:
     """Detail triangles of one tile, those of one polygon in a row, and how many each has."""
     count = np.zeros(len(tile.polygons), np.int64)
     ground = np.flatnonzero(tile.ground)
@@ -125,7 +124,7 @@ def _triangles(
     return records, count
 
 
-def _nodes(tiles: tuple[Tile, ...]) -> tuple[NDArray[np.void], list[int]]:
+def _nodes(tiles: tuple[Tile, ...]) -> tuple[Records, list[int]]:
     bases = np.cumsum([0, *(len(tile.nodes) for tile in tiles)]).tolist()
     records = np.zeros(bases[-1], NODE)
     for name in ("low", "high", "item"):
@@ -133,7 +132,7 @@ def _nodes(tiles: tuple[Tile, ...]) -> tuple[NDArray[np.void], list[int]]:
     return records, bases
 
 
-def _tiles(tiles: tuple[Tile, ...], bases: list[int], node_bases: list[int]) -> NDArray[np.void]:
+def _tiles(tiles: tuple[Tile, ...], bases: list[int], node_bases: list[int]) -> Records:
     records = np.zeros(len(tiles), TILE)
     for record, tile in zip(records, tiles, strict=True):
         header = tile.header

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import DTypeLike
 
 from c2nav_engine.errors import NavMeshError
+
+Records = Any
+"""An array of structured records, or one of them; the fields stand beside its dtype."""
 
 
 class Cursor:
@@ -26,7 +30,7 @@ class Cursor:
         self.offset = 0
         self.end = len(data)
 
-    def array(self, what: str, kind: DTypeLike, count: int) -> NDArray[np.generic]:
+    def array(self, what: str, kind: DTypeLike, count: int) -> Records:
         """The next `count` records, read-only, and the cursor moves on.
 
         Raises `NavMeshError` where fewer bytes are left than the records need.
@@ -41,9 +45,13 @@ class Cursor:
         self.offset += needed
         return values
 
-    def numbers(self, what: str, kind: DTypeLike, count: int) -> list[float]:
-        """The next `count` plain numbers as Python values."""
-        return [value.item() for value in self.array(what, kind, count)]
+    def integers(self, what: str, count: int) -> list[int]:
+        """The next `count` signed 32-bit integers."""
+        return [int(value) for value in self.array(what, "<i4", count)]
+
+    def floats(self, what: str, count: int) -> list[float]:
+        """The next `count` single-precision numbers."""
+        return [float(value) for value in self.array(what, "<f4", count)]
 
     def peek(self, ahead: int, count: int) -> bytes:
         """Bytes further on, without moving; shorter where the file ends."""

@@ -65,7 +65,7 @@ def read_file(path: Path) -> NavMeshFile:
 def parse(data: bytes, path: Path) -> NavMeshFile:
     """The same from bytes; `path` only names them in complaints."""
     cursor = Cursor(data, path)
-    magic, version, count = (int(n) for n in cursor.numbers("set header", "<i4", 3))
+    magic, version, count = cursor.integers("set header", 3)
     if magic != SET_MAGIC:
         raise cursor.error(f"the magic MSET ({SET_MAGIC:#x})", f"{magic:#x}", offset=0)
     if version not in VERSIONS:
@@ -84,22 +84,20 @@ def parse(data: bytes, path: Path) -> NavMeshFile:
 
 def _read_grid(cursor: Cursor) -> tuple[Grid, int]:
     start = cursor.offset
-    x, y, z, width, depth = cursor.numbers("grid", "<f4", 5)
-    most_tiles, _most_polygons = cursor.numbers("grid limits", "<i4", 2)
+    x, y, z, width, depth = cursor.floats("grid", 5)
+    most_tiles, _most_polygons = cursor.integers("grid limits", 2)
     if not all(abs(value) <= FARTHEST_M for value in (x, y, z)):
         raise cursor.error("a finite grid origin", f"({x}, {y}, {z})", offset=start)
     if not (1e-3 <= width <= FARTHEST_M and 1e-3 <= depth <= FARTHEST_M):
         raise cursor.error("tiles of 1 mm or more", f"{width} × {depth} m", offset=start + 12)
-    return Grid((x, y, z), width, depth), int(most_tiles)
+    return Grid((x, y, z), width, depth), most_tiles
 
 
 def _read_settings(cursor: Cursor) -> dict[str, float]:
     """The settings block, with the scene bounds that some versions of habitat-sim put into it."""
     for extra in (0, _BOUNDS_BYTES):
         if cursor.peek(BLOCK_BYTES + extra + 8, 4) == _TILE_MAGIC:
-            recorded = read_block(cursor)
-            cursor.array("scene bounds", "u1", extra)
-            return recorded
+            return read_block(cursor, bounds_bytes=extra)
     raise cursor.error(
         f"a settings block of {BLOCK_BYTES} bytes and a tile after it",
         f"{cursor.peek(BLOCK_BYTES + 8, 4)!r} where the tile should start",

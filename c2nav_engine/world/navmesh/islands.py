@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 from numpy.typing import NDArray
 
 from c2nav_engine.world.compiled import compiled
-from c2nav_engine.world.navmesh.arrays import MeshArrays, Records
+from c2nav_engine.world.navmesh.arrays import MAX_CORNERS, MeshArrays, Records
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +84,7 @@ def describe_islands(mesh: MeshArrays) -> tuple[Island, ...]:
     areas = polygon_areas_m2(mesh)
     corners: NDArray[np.int32] = mesh.polygons["corners"]
     heights: NDArray[np.float32] = mesh.polygons["points"][..., 1]
-    used = np.arange(heights.shape[1]) < corners[:, None]
+    used: NDArray[np.bool_] = np.arange(MAX_CORNERS) < corners[:, None]
     islands: list[Island] = []
     for number in range(int(mesh.island.max(initial=-1)) + 1):
         members = mesh.island == number

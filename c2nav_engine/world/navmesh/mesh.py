@@ -15,7 +15,7 @@ from c2nav_engine.world.navmesh import settings as navmesh_settings
 from c2nav_engine.world.navmesh.arrays import MeshArrays
 from c2nav_engine.world.navmesh.assemble import assemble, restricted
 from c2nav_engine.world.navmesh.corridor import workspace
-from c2nav_engine.world.navmesh.field import NavMeshField, Openings, field_to, openings_of
+from c2nav_engine.world.navmesh.field import NavMeshField, Sights, field_to, sights_of
 from c2nav_engine.world.navmesh.file import NavMeshFile, read_file
 from c2nav_engine.world.navmesh.islands import Island, describe_islands, polygon_areas_m2
 from c2nav_engine.world.navmesh.queries import find_line, snap, try_step
@@ -49,7 +49,7 @@ class NavMesh:
     islands: tuple[Island, ...]
     arrays: MeshArrays
     as_filed: MeshArrays
-    _openings: Openings
+    _sights: list[Sights] = field(default_factory=list[Sights])
     _fields: dict[Point, NavMeshField] = field(default_factory=dict[Point, NavMeshField])
 
     @property
@@ -112,7 +112,9 @@ class NavMesh:
             raise ValueError(message)
         known = self._fields.get(target_m)
         if known is None:
-            known = field_to(self.arrays, self._openings, target_m)
+            if not self._sights:
+                self._sights.append(sights_of(self.arrays))
+            known = field_to(self.arrays, self._sights[0], target_m)
             while len(self._fields) >= _KEPT_FIELDS:
                 self._fields.pop(next(iter(self._fields)), None)
             self._fields[target_m] = known
@@ -163,7 +165,6 @@ def prepare(file: NavMeshFile, path: Path) -> NavMesh:
         islands=describe_islands(arrays),
         arrays=arrays,
         as_filed=restricted(ground, (ground.passable != 0) & (flags != 0)),
-        _openings=openings_of(arrays),
     )
 
 

@@ -22,6 +22,13 @@ def store(row: Records, point: Vector) -> None:
 
 
 @compiled
+def _store_found(row: Records, polygon: int, point: Vector) -> None:
+    store(row, point)
+    if polygon < 0:
+        row[:] = np.nan
+
+
+@compiled
 def snap(mesh: MeshArrays, point: Records, snapped: Records) -> int:
     """Fill the nearest surface point; its polygon, or -1 where none is in reach."""
     polygon, nearest = nearest_polygon(mesh, vector(point))
@@ -35,15 +42,15 @@ def find_line(
 ) -> tuple[int, float]:
     """The line between two points: how many corners of `work.corners` it has, and its length.
 
-    The corridor runs between the snapped points, which are filled in. The line in it runs between
-    the points as given; pass one array as both for the line between the snapped ones. Without a way
-    there are 0 corners and the length is infinite.
+    The corridor runs between the snapped points, which are filled in (nan: none in reach). The line
+    in it runs between the points as given; pass one array as both for the line between the snapped
+    ones. Without a way there are 0 corners and the length is infinite.
     """
     start, goal = vector(ends[0]), vector(ends[1])
     start_polygon, from_point = nearest_polygon(mesh, start)
     goal_polygon, to_point = nearest_polygon(mesh, goal)
-    store(snapped[0], from_point)
-    store(snapped[1], to_point)
+    _store_found(snapped[0], start_polygon, from_point)
+    _store_found(snapped[1], goal_polygon, to_point)
     if start_polygon < 0 or goal_polygon < 0:
         return 0, np.inf
     if mesh.island[start_polygon] != mesh.island[goal_polygon]:

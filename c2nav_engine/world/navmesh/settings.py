@@ -56,11 +56,12 @@ class NavMeshSettings:
     recorded: Mapping[str, float] = field(default_factory=dict[str, float])
 
 
-def read_block(cursor: Cursor) -> dict[str, float]:
-    """Version 2's settings block: thirteen numbers and four flags, 56 bytes."""
+def read_block(cursor: Cursor, *, bounds_bytes: int) -> dict[str, float]:
+    """Version 2's settings block: thirteen numbers and four flags, scene bounds perhaps between."""
     start = cursor.offset
-    values = cursor.numbers("settings", "<f4", len(_NUMBERS))
-    flags = cursor.numbers("settings flags", "u1", len(_FLAGS))
+    values = cursor.floats("settings", len(_NUMBERS))
+    cursor.array("scene bounds", "u1", bounds_bytes)
+    flags = [float(flag) for flag in cursor.array("settings flags", "u1", len(_FLAGS))]
     recorded: dict[str, float] = {}
     recorded.update(zip((*_NUMBERS, *_FLAGS), (*values, *flags), strict=True))
     for index, (name, value) in enumerate(recorded.items()):

@@ -8,13 +8,12 @@ connections.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float32, UInt8
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import DTypeLike
 
-from c2nav_engine.world.navmesh.cursor import Cursor
+from c2nav_engine.world.navmesh.cursor import Cursor, Records
 
 MAGIC = int.from_bytes(b"DNAV", "big")
 VERSION = 7
@@ -72,14 +71,14 @@ class Tile:
         nodes: Records of `NODE`; empty where the file has no tree.
     """
 
-    header: np.void
+    header: Records
     vertices: Float32[np.ndarray, "v 3"]
-    polygons: NDArray[np.void]
+    polygons: Records
     ground: Bool[np.ndarray, " p"]
-    details: NDArray[np.void]
+    details: Records
     detail_vertices: Float32[np.ndarray, "dv 3"]
     detail_triangles: UInt8[np.ndarray, "dt 4"]
-    nodes: NDArray[np.void]
+    nodes: Records
 
 
 def read_tile(cursor: Cursor, size: int) -> Tile:
@@ -99,7 +98,7 @@ def read_tile(cursor: Cursor, size: int) -> Tile:
     return tile
 
 
-def _header(cursor: Cursor) -> np.void:
+def _header(cursor: Cursor) -> Records:
     start = cursor.offset
     header = cursor.array("tile header", HEADER, 1)[0]
     if header["magic"] != MAGIC:
@@ -117,8 +116,8 @@ def _header(cursor: Cursor) -> np.void:
     return header
 
 
-def _sections(cursor: Cursor, header: np.void) -> Tile:
-    def section(what: str, kind: DTypeLike, count: str) -> NDArray[Any]:
+def _sections(cursor: Cursor, header: Records) -> Tile:
+    def section(what: str, kind: DTypeLike, count: str) -> Records:
         return cursor.array(what, kind, int(header[count]))
 
     vertices = section("vertices", "<3f4", "vertices")
