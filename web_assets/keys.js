@@ -33,6 +33,8 @@ function taken(event) {
   const target = event.composedPath()[0];
   if (!(target instanceof Element)) return false;
   if (target.closest("input, textarea, select, [contenteditable], [role=slider], [role=combobox]")) return true;
+  // A focused card whose ranking is being made lets Enter commit it.
+  if (event.key === "Enter" && target.closest(".card") && state.decision?.source === "draft") return false;
   // A focused button keeps Space and Enter for itself.
   return (event.key === " " || event.key === "Enter") && target.closest("button, a") !== null;
 }

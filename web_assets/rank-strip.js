@@ -181,17 +181,17 @@ class RankStrip extends HTMLElement {
     }
     rail.append(h("span", { class: "space" }));
     const more = [
-      ["none", "None of these", "X", state.draft.none],
+      ["none", "None", "X", state.draft.none],
       ["tie", "Tie", "=", state.draft.tie_next],
     ];
     if (drafted) {
       for (const [type, label, key, pressed] of more)
         rail.append(h("button", { type: "button", "aria-pressed": `${pressed}`, onclick: () => send(type) }, label, h("kbd", {}, key)));
       rail.append(h("button", { type: "button", onclick: () => send("clear") }, "Clear", h("kbd", {}, "Esc")));
-      const go = decision.pending ? "Commit" : state.offer ? "Fork now" : "Fork here…";
+      const go = decision.pending ? "Commit" : state.offer ? "Fork" : "Fork…";
       rail.append(h("button", { type: "button", class: "go", onclick: () => send("commit") }, go, h("kbd", {}, "⏎")));
     } else {
-      rail.append(h("button", { type: "button", onclick: () => send("none") }, "None of these", h("kbd", {}, "X")));
+      rail.append(h("button", { type: "button", title: "none of these", onclick: () => send("none") }, "None", h("kbd", {}, "X")));
       if (decision.pending)
         rail.append(h("button", { type: "button", class: "go", onclick: () => send("commit") }, "Commit", h("kbd", {}, "⏎")));
     }

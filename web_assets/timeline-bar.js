@@ -95,7 +95,7 @@ class TimelineBar extends HTMLElement {
     for (const { leg, step } of timeline.legs) {
       if (timeline.legs.length < 2) break;
       parts.push(s("line", { class: "leg", x1: this.x(step), x2: this.x(step), y1: CURVE.top - 4, y2: y(0) }));
-      parts.push(s("text", { class: "legname", x: this.x(step) + 4, y: CURVE.top + 4 }, `leg ${leg + 1}`));
+      parts.push(s("text", { class: "legname", x: this.x(step) + 4, y: y(0) - 2 }, `leg ${leg + 1}`));
     }
     if (ghost.length > 1) parts.push(s("path", { class: "rest", d: line(ghost) }));
     if (rest.length > 1) parts.push(s("path", { class: "rest", d: line(rest) }));

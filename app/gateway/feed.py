@@ -35,9 +35,12 @@ class Feed:
 
     def attach(self) -> None:
         """Wake the streams from the worker's thread through this loop."""
-        loop = asyncio.get_running_loop()
-        self._loop = loop
-        self._session.subscribe(lambda _: loop.call_soon_threadsafe(self._wake))
+        self._loop = asyncio.get_running_loop()
+        self._session.subscribe(self._heard)
+
+    def _heard(self, _: Snapshot) -> None:
+        if self._loop is not None and not self._closing:
+            self._loop.call_soon_threadsafe(self._wake)
 
     def close(self) -> None:
         """End all streams."""

@@ -49,7 +49,7 @@ class Shell:
             self._server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
         self._updates: list[Update] = []
         self._layers: list[Layer] = []
-        self._cameras = Cameras(self._server)
+        self._cameras = Cameras(self._server, covered_px=LEFT_PX + RIGHT_PX)
         self._changed = threading.Event()
         self._closing = False
         self._dress()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from app.session.decisions import LANES, Decision
@@ -9,9 +10,13 @@ from app.session.draft import outcome_of
 from app.session.snapshot import Snapshot
 from app.session.wording import SIGNS, key_words, ordinal, outcome_words, slot_words
 from c2nav_engine.contract.outcome import Answered, Key, Ordering, Tie
+from c2nav_engine.contract.prompt import Query
+from c2nav_engine.contract.question import Slot
 from c2nav_engine.navigator.requests import Candidate
 
 Json = dict[str, Any]
+
+_QUOTED = re.compile(r"<leg>(.*?)</leg>", re.DOTALL)
 
 
 def decision_json(snapshot: Snapshot) -> Json | None:
@@ -37,9 +42,52 @@ def decision_json(snapshot: Snapshot) -> Json | None:
         "source": _source(snapshot, decision),
         "outcome": outcome_words(said, decision.letters),
         "cards": [_card(c, decision, ranks) for c in decision.facts.candidates],
-        "context": [
-            {"words": words, "sha": picture.sha256}
-            for words, picture in (decision.question.context if decision.question else ())
+        "context": _context(decision),
+    }
+
+
+def _context(decision: Decision) -> list[Json]:
+    """Pictures that all alternatives share, the newest first."""
+    context = decision.question.context if decision.question else ()
+    return [{"words": words, "sha": picture.sha256} for words, picture in reversed(context)]
+
+
+def lookback_json(snapshot: Snapshot) -> Json | None:
+    """Everything that `<image-pair>` draws: the newest look-back question so far."""
+    number = snapshot.here.decision
+    for decision in reversed(snapshot.story.decisions[: number + 1]):
+        if decision.slot is Slot.LOOKBACK:
+            return _pair(snapshot, decision)
+    return None
+
+
+def _pair(snapshot: Snapshot, decision: Decision) -> Json:
+    in_view = snapshot.here.decision == decision.number
+    ranked = decision.ranked or (snapshot.proposal if in_view else None)
+    said = said_of(snapshot, decision) if in_view else decision.outcome
+    winner = said.winner if isinstance(said, Ordering) else None
+    letters = decision.letters
+    queries: list[Query] = list(ranked.queries) if ranked else []
+    first = queries[0].outcome if queries else None
+    return {
+        "decision": decision.number,
+        "cards": [
+            {
+                "key": alternative.key,
+                "name": key_words(alternative.key),
+                "letter": letters.get(alternative.key, ""),
+                "sha": alternative.picture.sha256 if alternative.picture else "",
+                "won": alternative.key == winner,
+            }
+            for alternative in (decision.question.alternatives if decision.question else ())
+        ],
+        "orders": [
+            {
+                "shown": " ".join(letters.get(key, "?") for _, key in query.prompt.labels),
+                "said": outcome_words(query.outcome, letters),
+                "differs": query.outcome != first,
+            }
+            for query in queries
         ],
     }
 
@@ -92,10 +140,15 @@ def _card(candidate: Candidate, decision: Decision, ranks: dict[Key, int]) -> Js
         "sha": picture.sha256 if picture else "",
         "width": picture.width_px if picture else 0,
         "height": picture.height_px if picture else 0,
-        "text": alternative.text if alternative else "",
+        "text": _plain(alternative.text) if alternative else "",
         "free_m": None if candidate.free_m is None else round(candidate.free_m, 2),
         "feasible": candidate.feasible,
         "veto": candidate.veto,
         "rank": rank,
         "ordinal": ordinal(rank) if rank else "",
     }
+
+
+def _plain(text: str) -> str:
+    """An alternative's words without the marks around quoted legs."""
+    return _QUOTED.sub("“\\1”", text)

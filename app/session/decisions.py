@@ -14,8 +14,10 @@ from c2nav_engine.navigator.requests import (
     Candidate,
     Facts,
     Move,
+    Moved,
     Note,
     Request,
+    Seen,
     Unasked,
 )
 from c2nav_engine.runner.exchange import Exchange, Override

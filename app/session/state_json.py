@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from app.session.branches import Origin, cost_of, ended_words
-from app.session.cards import decision_json
+from app.session.cards import decision_json, lookback_json
 from app.session.decisions import Decision
 from app.session.route_text import route_segments
 from app.session.snapshot import Snapshot
@@ -25,6 +25,7 @@ def state_json(snapshot: Snapshot) -> Json:
         "version": snapshot.version,
         "episode": _episode(snapshot, decision),
         "decision": decision_json(snapshot),
+        "lookback": lookback_json(snapshot),
         "pending": decision is not None and decision.pending,
         "place": {
             "step": snapshot.here.step,

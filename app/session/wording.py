@@ -111,7 +111,7 @@ def degrees(angle_rad: float) -> str:
 
 
 def plural(count: int, noun: str) -> str:
-    """ "3 steps", "1 step"."""
+    """A count with its noun, in the plural where needed."""
     if noun == "query":
         return f"{count:,} {'query' if count == 1 else 'queries'}"
     return f"{count:,} {noun}{'' if count == 1 else 's'}"

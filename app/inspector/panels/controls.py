@@ -9,14 +9,17 @@ import viser
 from app.inspector.panels.protocol import Dispatch
 from app.session.commands import Command
 
+NO_OPTIONS: tuple[str, ...] = ("",)
+
 
 class Picker:
     """A drop-down over ids with labels; hidden while there is nothing to choose."""
 
     def __init__(self, gui: viser.GuiApi, label: str, pick: Callable[[str], None]) -> None:
         """Place it; `pick` gets the id that a person chose."""
-        blank: str = ""
-        self._handle = gui.add_dropdown(label, (blank,), visible=False)
+        self._handle: viser.GuiDropdownHandle[str] = gui.add_dropdown(
+            label, NO_OPTIONS, visible=False
+        )
         self._ids: dict[str, str] = {}
 
         @self._handle.on_update
@@ -28,7 +31,7 @@ class Picker:
     def show(self, labels: Mapping[str, str], chosen: str, *, least: int = 1) -> None:
         """Offer labels by id; hidden below `least` of them."""
         self._ids = {label: name for name, label in labels.items()}
-        options = tuple(self._ids) or ("",)
+        options = tuple(self._ids) or NO_OPTIONS
         if tuple(self._handle.options) != options:
             self._handle.options = options
         value = labels.get(chosen, options[0])

@@ -38,7 +38,7 @@ def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:
         dispatch(c.Remark(text=remark.value))
 
     @who.on_update
-    def _(event: viser.GuiEvent[viser.GuiInputHandle[str]]) -> None:
+    def _(event: viser.GuiEvent[viser.GuiTextHandle]) -> None:
         if event.client is not None:
             dispatch(c.Name(who=event.target.value))
 

@@ -57,7 +57,7 @@ def _block(snapshot: Snapshot) -> str:
         m.quote(last.rendering),
         m.heading("Entries, newest first"),
         m.table(
-            ["cycle", "leg", "moved", "turning", "words", "cue", ""],
+            ["cycle", "leg", "entry", "turning", "cue", ""],
             [_row(sketch) for sketch in reversed(sketches[-_SHOWN:])],
         ),
     )
@@ -76,9 +76,10 @@ def _row(sketch: SketchState) -> list[str | Markup]:
     return [
         str(entry.cycle),
         str(entry.leg + 1),
-        f"{forward_m:+.1f} ahead, {right_m:+.1f} right m",
+        Markup("{}<small>{:+.1f} m ahead, {:+.1f} m right</small>").format(
+            entry.words, forward_m, right_m
+        ),
         entry.turning,
-        entry.words,
         entry.cue,
         m.picture(thumbnail.sha256, alt="", size_px=48) if thumbnail else "",
     ]

@@ -11,55 +11,60 @@ from app.inspector.scene import frames
 from app.session.snapshot import Snapshot
 from c2nav_engine.geometry import Point, Pose
 
-_PITCH = math.radians(58.0)
+_PITCH = math.radians(66.0)
 """Of the first view: steep enough to look over walls, flat enough to read furniture."""
 
 _FOV = math.radians(50.0)
-_MARGIN = 1.25
-_NEAREST_M = 4.0
+_USED = 0.72
+"""Share of the half picture that the framed points may fill: the strip covers the top."""
+
+_NEAREST_M = 6.0
+
+_LEAST_PX = 400
+"""No window is so narrow that the docks leave less: then they were subtracted already."""
 
 
 class Cameras:
     """Moves the clients' cameras; a free camera is framed once and then left to the person."""
 
-    def __init__(self, server: viser.ViserServer) -> None:
-        """Start above the origin until something is known."""
+    def __init__(self, server: viser.ViserServer, *, covered_px: int) -> None:
+        """Start above the origin until something is known.
+
+        Args:
+            server: Whose clients are moved.
+            covered_px: Width of the docks. A page connects before they take their place, so its
+                first picture is as wide as the window.
+        """
         self._server = server
-        self._framed = ""
-        self._mode = ""
+        self._covered_px = covered_px
+        self._framed: str = ""
+        self._mode: str = ""
 
     def update(self, snapshot: Snapshot) -> None:
         """Frame at first, follow after."""
         mode = snapshot.view.camera
-        key = f"{snapshot.branches[0].branch_id}"
-        if key != self._framed:
-            self._framed = key
-            self._frame(framed_points(snapshot))
-        changed, self._mode = mode != self._mode, mode
-        if mode == "free":
-            if changed:
-                self._frame(framed_points(snapshot))
-            return
-        for client in self._server.get_clients().values():
-            _place(client, snapshot, mode)
+        opened = snapshot.branches[0].branch_id
+        changed: bool = mode != self._mode or opened != self._framed
+        self._mode, self._framed = mode, opened
+        if mode != "free" or changed:
+            for client in self._server.get_clients().values():
+                self.greet(client, snapshot)
 
     def greet(self, client: viser.ClientHandle, snapshot: Snapshot) -> None:
-        """Give a new page the view that the others have."""
+        """Give a page the view that the others have."""
         if snapshot.view.camera == "free":
-            position, target = overview(framed_points(snapshot))
-            _look(client, position, target)
+            camera = client.camera
+            width_px = uncovered_px(camera.image_width, self._covered_px)
+            camera.fov = _FOV
+            _look(client, *overview(framed_points(snapshot), width_px / camera.image_height))
         else:
             _place(client, snapshot, snapshot.view.camera)
 
-    def _frame(self, points_m: list[Point]) -> None:
-        position, target = overview(points_m)
-        initial = self._server.initial_camera
-        initial.position = position
-        initial.look_at = target
-        initial.up = (0.0, 1.0, 0.0)
-        initial.fov = _FOV
-        for client in self._server.get_clients().values():
-            _look(client, position, target)
+
+def uncovered_px(width_px: int, covered_px: int) -> int:
+    """Width of the map once the docks stand, whether or not they do already."""
+    left = width_px - covered_px
+    return left if left > _LEAST_PX else width_px
 
 
 def framed_points(snapshot: Snapshot) -> list[Point]:
@@ -72,17 +77,28 @@ def framed_points(snapshot: Snapshot) -> list[Point]:
     return points
 
 
-def overview(points_m: list[Point]) -> tuple[Point, Point]:
-    """Camera position and target from which all points are seen, looking along −Z and down."""
-    array = np.array(points_m)
-    low, high = array.min(axis=0), array.max(axis=0)
-    target = (low + high) / 2.0
-    span_m = max(float(np.linalg.norm((high - low)[[0, 2]])), _NEAREST_M)
-    distance_m = _MARGIN * span_m / (2.0 * math.tan(_FOV / 2.0)) + 2.0
-    back = np.array([0.0, math.sin(_PITCH), math.cos(_PITCH)]) * distance_m
-    x, y, z = (target + back).tolist()
-    tx, ty, tz = target.tolist()
-    return (x, y, z), (tx, ty, tz)
+def overview(points_m: list[Point], aspect: float = 1.0) -> tuple[Point, Point]:
+    """Camera position and target from which all points are seen, looking along −Z and down.
+
+    Args:
+        points_m: What must be in the picture.
+        aspect: Width over height of the part of the page that no dock covers.
+    """
+    points = np.array(points_m)
+    target = (points.min(axis=0) + points.max(axis=0)) / 2.0
+    x, y, z = (points - target).T
+    sin, cos = math.sin(_PITCH), math.cos(_PITCH)
+    up, nearer = y * cos - z * sin, y * sin + z * cos
+    tall = math.tan(_FOV / 2.0) * _USED
+    needed = np.maximum(np.abs(x) / (tall * aspect), np.abs(up) / tall) + nearer
+    distance_m = max(float(needed.max()), _NEAREST_M)
+    eye = target + np.array([0.0, sin, cos]) * distance_m
+    return _point(eye), _point(target)
+
+
+def _point(array: np.ndarray) -> Point:
+    x, y, z = array.tolist()
+    return (x, y, z)
 
 
 def _place(client: viser.ClientHandle, snapshot: Snapshot, mode: str) -> None:

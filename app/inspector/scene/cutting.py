@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float32, Int64
 
-CUT_M = 1.9
+CUT_M = 1.6
 """Height of the cut above the floor the body stands on [C]: below door lintels, above tables."""
 
 
@@ -36,67 +36,44 @@ def cut_below(
     corners_m: Float32[np.ndarray, "n 3 3"], extra: Float32[np.ndarray, "n 3 k"], height_m: float
 ) -> Soup:
     """What lies below a horizontal plane, triangles on it clipped."""
-    above = corners_m[:, :, 1] > height_m
+    full = np.concatenate([corners_m, extra], axis=2)
+    above = full[:, :, 1] > height_m
     count = above.sum(axis=1)
-    index = np.arange(len(corners_m))
+    index = np.arange(len(full))
     whole = count == 0
-    pieces = [Soup(corners_m[whole], extra[whole], index[whole], np.zeros(whole.sum(), bool))]
-    one = count == 1  # one corner above: a quad is left, two triangles
-    pieces.append(_one_above(corners_m[one], extra[one], above[one], index[one], height_m))
-    two = count == 2  # two corners above: a triangle is left
-    pieces.append(_two_above(corners_m[two], extra[two], above[two], index[two], height_m))
-    return Soup(
-        np.concatenate([piece.corners_m for piece in pieces]),
-        np.concatenate([piece.extra for piece in pieces]),
-        np.concatenate([piece.source for piece in pieces]),
-        np.concatenate([piece.cut for piece in pieces]),
-    )
+    first, second = count == 1, count == 2
+    lone = np.concatenate([above[first].argmax(axis=1), (~above[second]).argmax(axis=1)])
+    turned = rolled(np.concatenate([full[first], full[second]]), lone)
+    quads, tips = turned[: first.sum()], turned[first.sum() :]
+    pieces = [full[whole], *_one_above(quads, height_m), _two_above(tips, height_m)]
+    sources = [index[whole], index[first], index[first], index[second]]
+    joined = np.concatenate(pieces)
+    clipped = np.ones(len(joined), dtype=np.bool_)
+    clipped[: len(pieces[0])] = False
+    return Soup(joined[:, :, :3], joined[:, :, 3:], np.concatenate(sources), clipped)
 
 
-def _rolled(array: np.ndarray, first: np.ndarray) -> np.ndarray:
+def rolled(triangles: np.ndarray, first: np.ndarray) -> np.ndarray:
     """Each triangle's corners turned so that `first` comes first; winding is kept."""
     order = (first[:, None] + np.arange(3)) % 3
-    return np.take_along_axis(array, order[:, :, None], axis=1)
+    return np.take_along_axis(triangles, order[:, :, None], axis=1)
 
 
-def _crossing(values: np.ndarray, low: np.ndarray, high: np.ndarray, height_m: float) -> np.ndarray:
-    """Values at the plane between two corners, given as [position | extra]."""
+def _crossing(low: np.ndarray, high: np.ndarray, height_m: float) -> np.ndarray:
+    """Corner values at the plane between two corners; the height is the second value."""
     rise = high[:, 1] - low[:, 1]
     part = (height_m - low[:, 1]) / np.where(rise == 0.0, 1.0, rise)
-    return low + (high - low) * part[:, None] if len(values) else low
+    return low + (high - low) * part[:, None]
 
 
-def _one_above(
-    corners_m: np.ndarray,
-    extra: np.ndarray,
-    above: np.ndarray,
-    index: np.ndarray,
-    height_m: float,
-) -> Soup:
-    full = np.concatenate([corners_m, extra], axis=2)
-    full = _rolled(full, above.argmax(axis=1))
-    top, right, left = full[:, 0], full[:, 1], full[:, 2]
-    on_right = _crossing(full, right, top, height_m)
-    on_left = _crossing(full, left, top, height_m)
-    first = np.stack([on_right, right, left], axis=1)
-    second = np.stack([on_right, left, on_left], axis=1)
-    both = np.concatenate([first, second])
-    return Soup(
-        both[:, :, :3], both[:, :, 3:], np.concatenate([index, index]), np.ones(len(both), bool)
-    )
+def _one_above(triangles: np.ndarray, height_m: float) -> tuple[np.ndarray, np.ndarray]:
+    """The first corner is cut off: a quad is left, as two triangles."""
+    top, right, left = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    on_right, on_left = _crossing(right, top, height_m), _crossing(left, top, height_m)
+    return np.stack([on_right, right, left], axis=1), np.stack([on_right, left, on_left], axis=1)
 
 
-def _two_above(
-    corners_m: np.ndarray,
-    extra: np.ndarray,
-    above: np.ndarray,
-    index: np.ndarray,
-    height_m: float,
-) -> Soup:
-    full = np.concatenate([corners_m, extra], axis=2)
-    full = _rolled(full, (~above).argmax(axis=1))
-    low, right, left = full[:, 0], full[:, 1], full[:, 2]
-    on_right = _crossing(full, low, right, height_m)
-    on_left = _crossing(full, low, left, height_m)
-    left_over = np.stack([low, on_right, on_left], axis=1)
-    return Soup(left_over[:, :, :3], left_over[:, :, 3:], index, np.ones(len(left_over), bool))
+def _two_above(triangles: np.ndarray, height_m: float) -> np.ndarray:
+    """Only the first corner is left."""
+    low, right, left = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    return np.stack([low, _crossing(low, right, height_m), _crossing(low, left, height_m)], axis=1)

@@ -17,7 +17,7 @@ from app.session.cards import ranks_of, said_of
 from app.session.decisions import Decision
 from app.session.snapshot import Snapshot
 from c2nav_engine.contract.question import Picture, Slot
-from c2nav_engine.geometry import Pose
+from c2nav_engine.geometry import Point, Pose
 
 _SCALE_M = 0.95
 _GLANCE_SCALE_M = 0.7
@@ -80,21 +80,19 @@ class Fan:
                 receive_shadow=False,
             )
             nodes.append(frustum)
-            nodes.append(self._label(decision, candidate.key, pose.turned(offset_rad), scale))
+            letter = decision.letters.get(candidate.key, "✕")
+            far_m = pose.turned(offset_rad).ahead(1.45 * scale)
+            nodes.append(self._label(letter, candidate.key, frames.raised(far_m, 0.95)))
             self._make_clickable(frustum, candidate.key, candidate.feasible)
         return nodes
 
-    def _label(
-        self, decision: Decision, key: str, looking: Pose, scale: float
-    ) -> viser.SceneNodeHandle:
-        letter = decision.letters.get(key, "✕")
+    def _label(self, letter: str, key: str, point_m: Point) -> viser.SceneNodeHandle:
         return self._scene.add_label(
-            f"/fan/{key}/letter",
+            f"/fan/letter_{key}",
             letter,
-            wxyz=(1.0, 0.0, 0.0, 0.0),
-            position=(0.0, -0.62 * scale, scale),
+            position=point_m,
             anchor="center-center",
-            font_screen_scale=1.1,
+            font_screen_scale=1.15,
         )
 
     def _make_clickable(self, frustum: viser.CameraFrustumHandle, key: str, feasible: bool) -> None:

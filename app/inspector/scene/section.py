@@ -11,6 +11,9 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from jaxtyping import Float32
+
+from app.inspector.scene.cutting import rolled
 
 CELL_M = 0.025
 THICKEST_M = 0.9
@@ -34,15 +37,17 @@ class Section:
     size_m: tuple[float, float]
 
 
-def outlines(corners_m: np.ndarray, height_m: float) -> np.ndarray:
+def outlines(corners_m: Float32[np.ndarray, "n 3 3"], height_m: float) -> np.ndarray:
     """(n, 2, 2) segments in (x, z) where triangles cross the plane."""
     above = corners_m[:, :, 1] > height_m
-    crossing = above.any(axis=1) & ~above.all(axis=1)
-    triangles, above = corners_m[crossing], above[crossing]
-    # The corner that stands alone on its side of the plane owns both crossing edges.
-    lone = np.where(above.sum(axis=1) == 1, above.argmax(axis=1), (~above).argmax(axis=1))
-    order = (lone[:, None] + np.arange(3)) % 3
-    turned = np.take_along_axis(triangles, order[:, :, None], axis=1)
+    count = above.sum(axis=1)
+    turned = np.concatenate(
+        [
+            # The corner that stands alone on its side of the plane owns both crossing edges.
+            rolled(corners_m[count == 1], above[count == 1].argmax(axis=1)),
+            rolled(corners_m[count == 2], (~above[count == 2]).argmax(axis=1)),
+        ]
+    )
     ends = [_meet(turned[:, 0], turned[:, other], height_m) for other in (1, 2)]
     return np.stack(ends, axis=1)
 
@@ -56,8 +61,7 @@ def _meet(a: np.ndarray, b: np.ndarray, height_m: float) -> np.ndarray:
 
 def section_of(groups: list[np.ndarray], height_m: float) -> Section | None:
     """The cut face of groups of triangles (parts), each filled on its own."""
-    lines = [outlines(corners_m, height_m) for corners_m in groups]
-    lines = [group for group in lines if len(group)]
+    lines = [line for corners_m in groups if len(line := outlines(corners_m, height_m))]
     if not lines:
         return None
     points = np.concatenate(lines).reshape(-1, 2)
@@ -78,23 +82,19 @@ def section_of(groups: list[np.ndarray], height_m: float) -> Section | None:
 def _filled(segments: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     """Lines of one group, and what they enclose unless it is too thick for a wall."""
     edges = np.zeros(shape, np.uint8)
-    drawn = np.round(segments * 8.0).astype(np.int32)
-    cv2.polylines(edges, list(drawn), isClosed=False, color=255, thickness=1, shift=3)
+    pixels = np.round(segments * 8.0).astype(np.int32)
+    cv2.polylines(edges, list(pixels), isClosed=False, color=255, thickness=1, shift=3)
     inside = _enclosed(edges)
     size = round(THICKEST_M / CELL_M) | 1
     thick = cv2.morphologyEx(inside, cv2.MORPH_OPEN, np.ones((size, size), np.uint8))
-    thick = cv2.dilate(thick, np.ones((3, 3), np.uint8))
-    return (inside & ~thick) | cv2.dilate(edges, np.ones((2, 2), np.uint8))
+    thick = np.asarray(cv2.dilate(thick, np.ones((3, 3), np.uint8)))
+    drawn = np.asarray(cv2.dilate(edges, np.ones((2, 2), np.uint8)))
+    return np.where(thick > 0, 0, inside) | drawn
 
 
 def _enclosed(edges: np.ndarray) -> np.ndarray:
-    """Even-odd fill from outside: regions are crossed one wall at a time."""
-    filled = np.zeros_like(edges)
-    contours, tree = cv2.findContours(edges, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
-    if tree is None:
-        return filled
-    holes = [contour for contour, node in zip(contours, tree[0], strict=True) if node[3] >= 0]
-    for hole in holes:
-        # A room lies beyond two outlines; matter lies beyond one: its hole is thin.
-        cv2.drawContours(filled, [hole], -1, 255, cv2.FILLED)
-    return filled
+    """Everything that some outline encloses."""
+    outside = cv2.copyMakeBorder(edges, 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=(0,))
+    mask = np.zeros((outside.shape[0] + 2, outside.shape[1] + 2), np.uint8)
+    cv2.floodFill(outside, mask, (0, 0), (128,))
+    return np.where(outside[1:-1, 1:-1] == 0, 255, 0).astype(np.uint8)
