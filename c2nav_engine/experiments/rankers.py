@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from c2nav_engine.errors import UsageError
+from c2nav_engine.experiments.asking import asking_from
 from c2nav_engine.rankers.protocol import Adapter
 from c2nav_engine.rankers.wrapper import AskingRanker
 from c2nav_engine.runner.opening import Seat, SeatFor
@@ -27,11 +28,17 @@ class RankerEntry:
         make: Options → what makes each episode's seat; raises `UsageError` for wrong options.
         words: One line for `--help` and the inspector.
         interactive: Needs a person at a page.
+        privileged: Knows the truth, and says so in every record.
+        remote: Waits for a server, so that episodes may overlap in one process.
+        adapter: Options → an adapter that needs no running episode; None where there is none.
     """
 
     make: Callable[[Options], SeatFor]
     words: str
     interactive: bool = False
+    privileged: bool = False
+    remote: bool = False
+    adapter: Callable[[Options], Adapter] | None = None
 
 
 def seats_for(name: str, options: Options | None = None) -> SeatFor:
@@ -42,29 +49,51 @@ def seats_for(name: str, options: Options | None = None) -> SeatFor:
     return RANKERS[name].make(options or {})
 
 
-def _shared(name: str, adapter: Adapter, options: Options) -> SeatFor:
+def ranker_for(name: str, options: Options | None = None) -> AskingRanker:
+    """A ranker for questions that exist already; raises `UsageError` where there can be none."""
+    seats_for_name = RANKERS.get(name)
+    if seats_for_name is None or seats_for_name.adapter is None:
+        able = ", ".join(each for each, entry in RANKERS.items() if entry.adapter is not None)
+        message = f"expected a ranker that answers recorded questions ({able}), came {name!r}"
+        raise UsageError(message)
+    asking, rest = asking_from(options or {})
+    return AskingRanker(seats_for_name.adapter(rest), asking)
+
+
+def _shared(adapter: Callable[[Options], Adapter]) -> Callable[[Options], SeatFor]:
     """One adapter for all episodes of a process."""
-    ranker = AskingRanker(adapter)
-    return lambda _stage: Seat(ranker, ranker.name or name, options)
+
+    def make(options: Options) -> SeatFor:
+        asking, rest = asking_from(options)
+        ranker = AskingRanker(adapter(rest), asking)
+        return lambda _stage: Seat(ranker, ranker.name, options)
+
+    return make
 
 
-def _reference_cv(options: Options) -> SeatFor:
+def _reference_cv(options: Options) -> Adapter:
     from c2nav_engine.rankers.reference_cv import ReferenceCv
 
-    return _shared("reference-cv", ReferenceCv.from_options(options), options)
+    return ReferenceCv.from_options(options)
 
 
-def _scripted(options: Options) -> SeatFor:
+def _scripted(options: Options) -> Adapter:
     from c2nav_engine.rankers.scripted import Scripted
 
-    return _shared("scripted", Scripted.from_options(options), options)
+    return Scripted.from_options(options)
+
+
+def _random_adapter(options: Options) -> Adapter:
+    from c2nav_engine.rankers.random_order import RandomOrder
+
+    return RandomOrder.from_options(options)
 
 
 def _random(options: Options) -> SeatFor:
     from c2nav_engine.rankers.random_order import RandomOrder
 
     if options:
-        return _shared("random", RandomOrder.from_options(options), options)
+        return _shared(_random_adapter)(options)
     return lambda stage: Seat(AskingRanker(RandomOrder(stage.seed)), "random")
 
 
@@ -81,32 +110,42 @@ def _simulated(options: Options) -> SeatFor:
     return lambda stage: simulated_seat(stage, options)
 
 
-def _openai_chat(options: Options) -> SeatFor:
+def _openai_chat(options: Options) -> Adapter:
     from c2nav_engine.rankers.openai_chat import OpenAIChat
 
-    return _shared("openai-chat", OpenAIChat.from_options(options), options)
+    return OpenAIChat.from_options(options)
 
 
-def _openai_responses(options: Options) -> SeatFor:
+def _openai_responses(options: Options) -> Adapter:
     from c2nav_engine.rankers.openai_responses import OpenAIResponses
 
-    return _shared("openai-responses", OpenAIResponses.from_options(options), options)
+    return OpenAIResponses.from_options(options)
 
 
-def _local(options: Options) -> SeatFor:
+def _local(options: Options) -> Adapter:
     from c2nav_engine.rankers.local import Local
 
-    return _shared("local", Local.from_options(options), options)
+    return Local.from_options(options)
+
+
+def _entry(
+    adapter: Callable[[Options], Adapter], words: str, *, remote: bool = False
+) -> RankerEntry:
+    return RankerEntry(_shared(adapter), words, remote=remote, adapter=adapter)
 
 
 RANKERS: Mapping[str, RankerEntry] = {
-    "reference-cv": RankerEntry(_reference_cv, "pixels and text only, no weights; the default"),
-    "openai-chat": RankerEntry(_openai_chat, "any server that speaks chat completions"),
-    "openai-responses": RankerEntry(_openai_responses, "servers that speak the responses API"),
-    "local": RankerEntry(_local, "Qwen3-VL in process (extra `local`)"),
+    "reference-cv": _entry(_reference_cv, "pixels and text only, no weights; the default"),
+    "openai-chat": _entry(_openai_chat, "any server that speaks chat completions", remote=True),
+    "openai-responses": _entry(
+        _openai_responses, "servers that speak the responses API", remote=True
+    ),
+    "local": _entry(_local, "Qwen3-VL in process (extra `local`)"),
     "human": RankerEntry(_human, "a person in the inspector", interactive=True),
-    "scripted": RankerEntry(_scripted, "a fixed answer, for tests"),
-    "random": RankerEntry(_random, "seeded uniform orders"),
-    "simulated": RankerEntry(_simulated, "privileged observer that knows the truth"),
+    "scripted": _entry(_scripted, "a fixed answer, for tests"),
+    "random": RankerEntry(_random, "seeded uniform orders", adapter=_random_adapter),
+    "simulated": RankerEntry(
+        _simulated, "privileged observer that knows the truth", privileged=True
+    ),
 }
 """Every ranker by name."""

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
 from c2nav_engine.experiments.columns import Row
-from c2nav_engine.experiments.statistics.intervals import Interval, bca_mean, wilson
-
-RATES = {"sr": "success", "osr": "os", "sr_zero_shot": "success_zero_shot"}
-"""Summary name → column, for shares of episodes."""
-MEANS = ("spl", "ne_m", "ndtw", "sdtw", "path_length_m", "steps", "queries")
-"""Columns whose finite values are averaged."""
+from c2nav_engine.experiments.estimates import MEANS, RATES, figure
+from c2nav_engine.experiments.statistics.intervals import Interval
 
 
 def summarise(rows: Sequence[Row]) -> dict[str, Any]:
@@ -31,26 +28,17 @@ def summarise(rows: Sequence[Row]) -> dict[str, Any]:
 
 
 def _group(rows: Sequence[Row]) -> dict[str, Any]:
-    counts: dict[str, int] = {}
-    for row in rows:
-        counts[str(row["outcome"])] = counts.get(str(row["outcome"]), 0) + 1
-    unreachable = sum(row.get("ne_m") == math.inf for row in rows)
-    entry: dict[str, Any] = {"n": len(rows), "outcomes": counts, "unreachable": unreachable}
-    for name, column in RATES.items():
-        known = [int(v) for row in rows if isinstance(v := row.get(column), int | float)]
-        entry[name] = _stated(wilson(sum(known), len(known))) if known else None
-    for column in MEANS:
-        entry[column] = _mean(rows, column)
-    return entry
+    return {
+        "n": len(rows),
+        "outcomes": dict(Counter(str(row["outcome"]) for row in rows)),
+        "unreachable": sum(row.get("ne_m") == math.inf for row in rows),
+        **{name: _stated(figure(rows, name)) for name in (*RATES, *MEANS)},
+    }
 
 
-def _mean(rows: Sequence[Row], column: str) -> dict[str, float | int | None] | None:
-    values = [row.get(column) for row in rows]
-    finite = [float(v) for v in values if isinstance(v, int | float) and math.isfinite(v)]
-    return _stated(bca_mean(finite, seed=0)) if finite else None
-
-
-def _stated(interval: Interval) -> dict[str, float | int | None]:
+def _stated(interval: Interval | None) -> dict[str, float | int | None] | None:
+    if interval is None:
+        return None
     ends = {"value": interval.estimate, "low": interval.low, "high": interval.high}
     finite = {name: end if math.isfinite(end) else None for name, end in ends.items()}
     return {**finite, "n": interval.n}

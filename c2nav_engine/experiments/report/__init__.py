@@ -1,0 +1,1 @@
+"""The paper's tables for any runs, with intervals, paired tests and what they cannot resolve."""
