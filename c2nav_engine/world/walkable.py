@@ -239,9 +239,10 @@ class WalkableSurface:
     def _field_to(self, target: Place) -> BuiltDistanceField:
         span, (x, z) = target
         key = (span, x, z)
-        if key not in self._fields:
-            self._fields[key] = BuiltDistanceField.to(self.spans, target)
-            if len(self._fields) > _FIELDS_KEPT:
-                self._fields.popitem(last=False)
-        self._fields.move_to_end(key)
-        return self._fields[key]
+        found = self._fields.pop(key, None)
+        if found is None:
+            found = BuiltDistanceField.to(self.spans, target)
+        self._fields[key] = found
+        while len(self._fields) > _FIELDS_KEPT:
+            self._fields.popitem(last=False)
+        return found
