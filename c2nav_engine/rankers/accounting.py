@@ -37,7 +37,7 @@ class Spent:
     """What a ranker has used so far; safe to share between threads.
 
     Attributes:
-        queries: Queries sent, retries and repairs included.
+        queries: Queries answered, retries and repairs included.
         cached: Of these, answered from the cache.
         tokens_in: Prompt tokens where known.
         tokens_out: Completion tokens where known.
@@ -65,7 +65,8 @@ class Spent:
 
     def check(self, config: AskingConfig, *, more: int) -> None:
         """Raise `RankerStopped` when that many more queries would leave the budget."""
-        if config.max_queries is not None and self.queries + more > config.max_queries:
+        sent = self.queries - self.cached
+        if config.max_queries is not None and sent + more > config.max_queries:
             raise RankerStopped(f"the budget of {config.max_queries} queries is used up")
         if config.max_cost_usd is not None and self.cost_usd >= config.max_cost_usd:
             raise RankerStopped(f"the budget of {config.max_cost_usd} USD is used up")

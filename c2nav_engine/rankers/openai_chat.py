@@ -40,12 +40,12 @@ class OpenAIChat:
         """One completion."""
         return self.send(prompt.parts, answer_schema(prompt))
 
-    def send(self, parts: tuple[Part, ...], schema: Schema) -> Reply:
-        """Any words and pictures, with the schema of the wanted answer."""
+    def send(self, parts: tuple[Part, ...], schema: Schema | None) -> Reply:
+        """Any words and pictures, with the schema of the wanted answer where there is one."""
         answer = self._transport.post("/chat/completions", self.body(parts, schema))
         return answer if isinstance(answer, Reply) else self._reply(answer)
 
-    def body(self, parts: tuple[Part, ...], schema: Schema) -> Json:
+    def body(self, parts: tuple[Part, ...], schema: Schema | None) -> Json:
         """The request as it goes out."""
         settings = self._settings
         takes = settings.capabilities
@@ -59,10 +59,14 @@ class OpenAIChat:
             body |= SAMPLING[settings.sampling]
         if takes.effort and settings.effort:
             body["reasoning_effort"] = settings.effort
-        if settings.schema:
+        if settings.schema and schema is not None:
             named = {"name": "answer", "strict": True, "schema": schema}
             body["response_format"] = {"type": "json_schema", "json_schema": named}
         return body
+
+    def say(self, text: str) -> Reply:
+        """A language-only completion, for the route parser."""
+        return self.send((text,), None)
 
     def start(self) -> tuple[str, ...]:
         """Try the server out; returns warnings."""

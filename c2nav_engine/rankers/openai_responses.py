@@ -40,12 +40,12 @@ class OpenAIResponses:
         """One response."""
         return self.send(prompt.parts, answer_schema(prompt))
 
-    def send(self, parts: tuple[Part, ...], schema: Schema) -> Reply:
-        """Any words and pictures, with the schema of the wanted answer."""
+    def send(self, parts: tuple[Part, ...], schema: Schema | None) -> Reply:
+        """Any words and pictures, with the schema of the wanted answer where there is one."""
         answer = self._transport.post("/responses", self.body(parts, schema))
         return answer if isinstance(answer, Reply) else self._reply(answer)
 
-    def body(self, parts: tuple[Part, ...], schema: Schema) -> Json:
+    def body(self, parts: tuple[Part, ...], schema: Schema | None) -> Json:
         """The request as it goes out."""
         settings = self._settings
         body: dict[str, object] = {
@@ -59,10 +59,14 @@ class OpenAIResponses:
             body["temperature"] = SAMPLING[settings.sampling]["temperature"]
         if settings.capabilities.effort and settings.effort:
             body["reasoning"] = {"effort": settings.effort}
-        if settings.schema:
+        if settings.schema and schema is not None:
             named = {"type": "json_schema", "name": "answer", "strict": True, "schema": schema}
             body["text"] = {"format": named}
         return body
+
+    def say(self, text: str) -> Reply:
+        """A language-only completion, for the route parser."""
+        return self.send((text,), None)
 
     def start(self) -> tuple[str, ...]:
         """Try the server out; returns warnings."""

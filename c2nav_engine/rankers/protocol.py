@@ -47,6 +47,15 @@ class Startable(Protocol):
 
 
 @runtime_checkable
+class Saying(Protocol):
+    """An adapter with a language model behind it that also takes plain text."""
+
+    def say(self, text: str) -> Reply:
+        """One language-only completion."""
+        ...
+
+
+@runtime_checkable
 class Closable(Protocol):
     """An adapter that holds connections or a model."""
 

@@ -30,6 +30,7 @@ from c2nav_engine.contract.question import Question
 from c2nav_engine.contract.render import render
 from c2nav_engine.errors import RankerUnavailable
 from c2nav_engine.rankers.accounting import AskingConfig, Spent
+from c2nav_engine.rankers.cache import AnswerCache
 from c2nav_engine.rankers.protocol import Adapter, BatchAdapter, Closable, Startable
 from c2nav_engine.rankers.reading import read
 
@@ -47,6 +48,7 @@ class AskingRanker:
     Args:
         adapter: What answers single prompts.
         config: Retries, budget, concurrency.
+        cache: Answers on disk; None asks every time.
         clock: Monotonic seconds, for latencies alone.
         sleep: Waits between retries.
         privileged: Whether the adapter knows the truth (simulated observers).
@@ -57,12 +59,14 @@ class AskingRanker:
         adapter: Adapter,
         config: AskingConfig | None = None,
         *,
+        cache: AnswerCache | None = None,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
         privileged: bool = False,
     ) -> None:
         self._adapter = adapter
         self._config = config or AskingConfig()
+        self._cache = cache
         self._clock = clock
         self._sleep = sleep
         self._privileged = privileged
@@ -152,17 +156,27 @@ class AskingRanker:
         )
 
     def _send(self, prompts: Sequence[Prompt]) -> list[Reply]:
+        """One reply per prompt: from the cache where it has one, else from the adapter."""
+        replies = [self._cache.get(prompt) if self._cache else None for prompt in prompts]
+        missing = [index for index, reply in enumerate(replies) if reply is None]
+        asked = self._ask_adapter([prompts[index] for index in missing]) if missing else []
+        for index, reply in zip(missing, asked, strict=True):
+            replies[index] = reply
+            if self._cache:
+                self._cache.put(prompts[index], reply)
+        finished = [reply for reply in replies if reply is not None]
+        for reply in finished:
+            self.spent.add(reply)
+        return finished
+
+    def _ask_adapter(self, prompts: Sequence[Prompt]) -> list[Reply]:
         self.spent.check(self._config, more=len(prompts))
         if isinstance(self._adapter, BatchAdapter):
-            replies = self._batch(self._adapter, prompts)
-        elif len(prompts) == 1 or self._config.concurrency == 1:
-            replies = [self._one(prompt) for prompt in prompts]
-        else:
-            with ThreadPoolExecutor(len(prompts)) as pool:
-                replies = list(pool.map(self._one, prompts))
-        for reply in replies:
-            self.spent.add(reply)
-        return replies
+            return self._batch(self._adapter, prompts)
+        if len(prompts) == 1 or self._config.concurrency == 1:
+            return [self._one(prompt) for prompt in prompts]
+        with ThreadPoolExecutor(len(prompts)) as pool:
+            return list(pool.map(self._one, prompts))
 
     def _one(self, prompt: Prompt) -> Reply:
         return self._timed(lambda: [self._adapter.answer(prompt)])[0]
