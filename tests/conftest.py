@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 from jaxtyping import install_import_hook
 
+from tests.helpers import checker
+
 # Shapes and types in the engine's signatures hold in every test, or the test fails.
-install_import_hook("c2nav_engine", "beartype.beartype")
+install_import_hook("c2nav_engine", f"{checker.__name__}.checked")
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 

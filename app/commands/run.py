@@ -40,7 +40,6 @@ from c2nav_engine.experiments.summary import summarise
 from c2nav_engine.experiments.working import Finished, source_of
 from c2nav_engine.navigator.variants import preset
 
-
 MOST_ROWS = 40
 """Longer tables are left to the files."""
 
@@ -58,6 +57,13 @@ def run(
     headings: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None,
     ground_truth: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None,
     workers: Annotated[int, tyro.conf.arg(help="Processes.")] = 1,
+    odometry_noise: Annotated[
+        float, tyro.conf.arg(help="Deviation of steps and turns, as a fraction of them.")
+    ] = 0.0,
+    depth_noise: Annotated[
+        float, tyro.conf.arg(help="Deviation of depths, as a fraction of them.")
+    ] = 0.0,
+    sliding: Annotated[bool, tyro.conf.arg(help="Whether blocked moves slide.")] = True,
     resume: Annotated[bool, tyro.conf.arg(help="Finish what is missing.")] = False,
     json: JsonOpt = False,
 ) -> int:
@@ -70,6 +76,9 @@ def run(
         profile=profile,
         ranker=ranker,
         ranker_options=key_values(ranker_opt),
+        odometry_noise=odometry_noise,
+        depth_noise=depth_noise,
+        sliding=sliding,
     )
     spec = spec_of(setting, variants=variants, episodes=episodes, seeds=seeds)
     rows = _run(spec, out, LocalExecutor(workers), resume=resume, quiet=json)

@@ -26,8 +26,8 @@ class Setting:
         profile: Embodiment profile.
         ranker: Ranker name.
         ranker_options: Its options; keys of services are named, never held.
-        odometry_noise: Whether odometry noise is on.
-        depth_noise: Whether depth noise is on.
+        odometry_noise: Standard deviation of steps and turns, as a fraction of them.
+        depth_noise: Standard deviation of depths, as a fraction of them.
         sliding: Whether blocked moves slide.
     """
 
@@ -38,8 +38,8 @@ class Setting:
     profile: str = "vlnce"
     ranker: str = DEFAULT_RANKER
     ranker_options: Mapping[str, str] = field(default_factory=dict[str, str])
-    odometry_noise: bool = False
-    depth_noise: bool = False
+    odometry_noise: float = 0.0
+    depth_noise: float = 0.0
     sliding: bool = True
 
     def check(self) -> None:

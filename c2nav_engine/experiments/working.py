@@ -19,6 +19,7 @@ from c2nav_engine.runner.record import EpisodeOutcome
 from c2nav_engine.runner.recording import TraceWriter
 from c2nav_engine.runner.source import Source, open_source
 from c2nav_engine.runner.worlds import Worlds, WorldsConfig
+from c2nav_engine.sensing.noise import NoiseConfig
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +65,11 @@ def _workbench(setting_json: str) -> Workbench:
         profile=profile,
         seat_for=seats_for(setting.ranker, setting.ranker_options),
         recorder_for=TraceWriter,
+        noise=NoiseConfig(
+            translation=setting.odometry_noise,
+            rotation=setting.odometry_noise,
+            depth=setting.depth_noise,
+        ),
     )
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -33,7 +34,11 @@ from c2nav_engine.runner.scoring import metrics_of
 from c2nav_engine.runner.shell import LiveShell, Sensors
 from c2nav_engine.runner.source import Source
 from c2nav_engine.runner.worlds import World, Worlds
+from c2nav_engine.sensing.noise import NoiseConfig, NoisySensors
 from c2nav_engine.world.surface import DistanceField
+
+RELIABLE = NoiseConfig()
+"""Sensing as the paper assumes it."""
 
 OFF_SURFACE_M = 0.5
 """A start farther than this from the floor, across or in height, is an error [C]."""
@@ -81,9 +86,6 @@ SeatFor = Callable[[Stage], Seat]
 Parse = Callable[[str], RouteLadder]
 """Instruction → route ladder, once per episode."""
 
-SensorsFor = Callable[[np.random.Generator], Sensors]
-"""Noise of one episode from its own generator."""
-
 RecorderFor = Callable[[Path, Header], Recorder]
 """Opens a trace file."""
 
@@ -124,7 +126,7 @@ class Workbench:
         seat_for: Who answers.
         recorder_for: Opens traces.
         parse: Makes the legs.
-        sensors_for: Noise, or None for reliable sensing.
+        noise: How unreliable sensing is; reliable by default.
     """
 
     source: Source
@@ -133,7 +135,7 @@ class Workbench:
     seat_for: SeatFor
     recorder_for: RecorderFor
     parse: Parse = parse_english
-    sensors_for: SensorsFor | None = None
+    noise: NoiseConfig = RELIABLE
 
     def open(self, spec: OpenSpec) -> EpisodeRun:
         """An episode standing at its first request.
@@ -160,7 +162,7 @@ class Workbench:
             renderer=world.renderer,
             profile=self.profile,
             goal_distance=None if goal_field is None else goal_field.distance_m,
-            sensors=self._sensors(spec),
+            sensors=sensors_of(self.noise, seed=spec.seed, episode_id=spec.episode_id),
         )
         return EpisodeRun(
             Parts(
@@ -214,12 +216,6 @@ class Workbench:
             return self.seat_for(stage)
         return Seat(AskingRanker(RandomOrder(stage.seed)), "random")
 
-    def _sensors(self, spec: OpenSpec) -> Sensors | None:
-        if self.sensors_for is None:
-            return None
-        key = hashlib.sha256(f"{spec.seed}/{spec.episode_id}/sensors".encode()).digest()
-        return self.sensors_for(np.random.default_rng(int.from_bytes(key[:8], "big")))
-
     def _header(self, spec: OpenSpec, stage: Stage, seat: Seat, ladder: RouteLadder) -> Header:
         return Header(
             run=spec.run,
@@ -246,8 +242,22 @@ class Workbench:
                 "source_sha256": self.source.file.sha256,
                 "ground_truth": self.source.ground_truth_name,
                 "renderer": stage.world.renderer.name,
+                "noise": json.dumps(asdict(self.noise)),
             },
         )
+
+
+def sensors_of(noise: NoiseConfig, *, seed: int, episode_id: str) -> Sensors | None:
+    """The noise of one episode from its own generator; None for reliable sensing."""
+    if not noise.moves and not noise.sees:
+        return None
+    key = hashlib.sha256(f"{seed}/{episode_id}/sensors".encode()).digest()
+    return NoisySensors(noise, np.random.default_rng(int.from_bytes(key[:8], "big")))
+
+
+def noise_of(header: Header) -> NoiseConfig:
+    """The noise that a recorded run sensed through."""
+    return NoiseConfig(**json.loads(header.extra.get("noise", "{}")))
 
 
 def task_of(header: Header) -> Task:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from c2nav_engine.episodes.files import EpisodeFile
-from c2nav_engine.runner.opening import goal_field_of, start_on
+from c2nav_engine.runner.opening import goal_field_of, noise_of, sensors_of, start_on
 from c2nav_engine.runner.record import Header
 from c2nav_engine.runner.shell import LiveShell
 from c2nav_engine.runner.source import Source
@@ -29,4 +29,7 @@ def shell_of(header: Header, *, scenes: Path | None) -> LiveShell:
         renderer=world.renderer,
         profile=header.profile,
         goal_distance=None if field is None else field.distance_m,
+        sensors=sensors_of(
+            noise_of(header), seed=header.seed, episode_id=header.episode.episode_id
+        ),
     )

@@ -17,6 +17,9 @@ from c2nav_engine.world.scene import Scene
 from c2nav_engine.world.surface import DistanceField, Surface
 from c2nav_engine.world.walkable import WalkableSurface, build_surface
 
+SURFACE_VERSION = 2
+"""Counts changes of the surface builder: older cached surfaces are built again."""
+
 KEPT_SCENES = 2
 """Scenes that one process keeps ready; Matterport scans weigh hundreds of megabytes."""
 
@@ -115,7 +118,7 @@ class Worlds:
 def built_surface(scene: Scene, profile: Profile, cache: Path) -> Surface:
     """Build the floor of a scene for a body, or take it from the cache keyed by both contents."""
     body = (profile.height_m, profile.radius_m, profile.climb_m, profile.slope_rad)
-    key = hashlib.sha256(f"{scene.sha256}/{body}/1".encode()).hexdigest()[:32]
+    key = hashlib.sha256(f"{scene.sha256}/{body}/{SURFACE_VERSION}".encode()).hexdigest()[:32]
     path = cache / "surfaces" / f"{key}.npz"
     if path.is_file():
         return WalkableSurface.load(path)

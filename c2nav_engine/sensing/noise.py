@@ -5,6 +5,7 @@ The paper assumes reliable sensing. These models let a user test how much rests 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,10 +87,10 @@ class NoisySensors:
 
     def _perturbed(self, motion: Motion) -> Motion:
         config = self._config
-        length, turn, drift = self._generator.standard_normal(3)
+        length, turn, drift = self._generator.standard_normal(3).tolist()
         scale = 1.0 + config.translation * length
-        travelled_m = float(np.hypot(motion.ahead_m, motion.left_m))
-        drift_rad = config.drift_rad_per_m * drift * np.sqrt(travelled_m)
+        travelled_m = math.hypot(motion.ahead_m, motion.left_m)
+        drift_rad = config.drift_rad_per_m * drift * math.sqrt(travelled_m)
         return Motion(
             ahead_m=motion.ahead_m * scale,
             left_m=motion.left_m * scale,
