@@ -276,6 +276,10 @@ class TraceFile:
                 return data
         return b""
 
+    def forget(self) -> None:
+        """Drop the chunks that are kept open."""
+        self._opened.clear()
+
     def close(self) -> None:
         """Close the file; idempotent."""
         if self._descriptor >= 0:

@@ -34,6 +34,15 @@ class Recovered:
     lost_bytes: int
     complete: bool
 
+    def __str__(self) -> str:
+        """For a person, on one line."""
+        kept = f"{self.exchanges} exchanges in {self.messages} messages"
+        if self.complete:
+            return f"{kept}, nothing missing"
+        return (
+            f"{kept}; left out: {self.damaged} damaged records, {self.lost_bytes} bytes at the end"
+        )
+
 
 def recover(source: Path, out: Path) -> Recovered:
     """Copy everything intact in `source` into a new, readable trace.

@@ -17,10 +17,10 @@ from c2nav_engine.traces.container import Container
 from c2nav_engine.traces.records import Stored
 from c2nav_engine.traces.topics import METADATA, TOPICS, Lane
 
-CHUNK_BYTES = {Lane.THUMBNAILS: 64 * 1024, Lane.DECISIONS: 64 * 1024, Lane.FACTS: 256 * 1024}
+CHUNK_BYTES = {Lane.THUMBNAILS: 64 * 1024, Lane.DECISIONS: 128 * 1024, Lane.FACTS: 256 * 1024}
 """Most that a chunk of these lanes holds before compression [C].
 
-One decision is read in a fraction of a millisecond from 64 KiB; 4 MiB would cost tens. Pictures
+A decision is read from 128 KiB in a fraction of a millisecond; 4 MiB would cost tens. Pictures
 and depth stay one chunk an exchange: a question shows the pictures of one look.
 """
 

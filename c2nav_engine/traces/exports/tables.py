@@ -99,7 +99,8 @@ def export_parquet(traces: Sequence[TraceFile], out: Path, *, table: str = "deci
     schema = _DECISIONS if decisions else _STEPS
     rows_of = decision_rows if decisions else step_rows
     rows = [row for trace in traces for row in rows_of(trace)]
-    pq.write_table(pa.Table.from_pylist(rows, schema=schema), out)
+    columns = [pa.array([row[each.name] for row in rows], each.type) for each in schema]
+    pq.write_table(pa.Table.from_arrays(columns, schema=schema), out)
     return len(rows)
 
 

@@ -13,6 +13,7 @@ import av
 import numpy as np
 from jaxtyping import UInt8
 
+from c2nav_engine.errors import UsageError
 from c2nav_engine.geometry import Point
 from c2nav_engine.traces.attachments import Task, task_of
 from c2nav_engine.traces.exports.board import Boards
@@ -39,8 +40,18 @@ class VideoStyle:
 
 
 def export_video(trace: TraceFile, out: Path, *, style: VideoStyle | None = None) -> int:
-    """Write views, map and decision words as MP4; returns the number of frames."""
+    """Write views, map and decision words as MP4; returns the number of frames.
+
+    Raises:
+        UsageError: The film is too small to read, or of an odd size.
+    """
     style = style or VideoStyle()
+    if style.width_px % 2 or style.height_px % 2 or style.width_px < 640 or style.height_px < 360:
+        message = (
+            "expected an even size of at least 640 × 360, came "
+            f"{style.width_px} × {style.height_px}"
+        )
+        raise UsageError(message)
     easel = _easel(trace, style)
     with _Film(out, style) as film:
         for board in Boards(trace, easel.task):
