@@ -150,7 +150,13 @@ def script(cycles: int) -> Script:
             support = support + 1 if won else 0
         advanced = support == 2 and leg < 2
         entry = SketchEntry(
-            cycle, leg, (0.1, 0.7), 3, "straight", "moved a few steps ahead", "current",
+            cycle,
+            leg,
+            (0.1, 0.7),
+            3,
+            "straight",
+            "moved a few steps ahead",
+            "current",
             painted(1000 + cycle, 112, 112),
         )
         leg, support = (leg + 1, 0) if advanced else (leg, support)
@@ -165,8 +171,14 @@ def script(cycles: int) -> Script:
 
 def _facts(slot: Slot, cycle: int, pose: Pose, *, leg: int, travelled_m: float = 0.0) -> Facts:
     return Facts(
-        slot, cycle, leg, (), odometry=pose, travelled_m=travelled_m,
-        leg_travelled_m=travelled_m / 2.0, notes={"history": "no collision, glance not due"},
+        slot,
+        cycle,
+        leg,
+        (),
+        odometry=pose,
+        travelled_m=travelled_m,
+        leg_travelled_m=travelled_m / 2.0,
+        notes={"history": "no collision, glance not due"},
     )
 
 
@@ -208,8 +220,16 @@ def _contrast(slot: Slot, facts: Facts, keys: tuple[str, str], *, seed: int) -> 
         for n, key in enumerate(keys)
     )
     question = Question(
-        slot, Form.ORDINAL, Orders.BOTH, INSTRUCTION, LEGS, facts.leg, alternatives,
-        shuffle_seed=seed, template=f"{slot.value}/1", sketch="moved several steps ahead",
+        slot,
+        Form.ORDINAL,
+        Orders.BOTH,
+        INSTRUCTION,
+        LEGS,
+        facts.leg,
+        alternatives,
+        shuffle_seed=seed,
+        template=f"{slot.value}/1",
+        sketch="moved several steps ahead",
         context=() if pictured else (("What the robot sees now:", painted(seed)),),
     )
     candidates = tuple(Candidate(a.key, True, picture=a.picture) for a in alternatives)
@@ -237,8 +257,14 @@ def _arriving(cycle: int, pose: Pose) -> Generator[Request, Any, bool]:
     marker = Marker(pose, 1, cycle, 9.0)
     yield Note(
         LadderState(
-            cycle, evidence["ground"], evidence["journey"], evidence["lookback"],
-            "stop" if sure else "hold", (), 2, () if sure else (marker,),
+            cycle,
+            evidence["ground"],
+            evidence["journey"],
+            evidence["lookback"],
+            "stop" if sure else "hold",
+            (),
+            2,
+            () if sure else (marker,),
             "" if sure else "marker left",
         )
     )
@@ -368,7 +394,9 @@ class PlayRun:
 def _looked(pose: Pose, step: int) -> Seen:
     views = tuple(
         View(
-            key, offset, painted(step * 7 + n),
+            key,
+            offset,
+            painted(step * 7 + n),
             free_m=0.3 if (key == "right" and step % 2 == 0) else 3.4 - n,
             depth=DepthStats(2.0, 0.01),
         )
@@ -394,7 +422,7 @@ def fork_of(
     parent: Header, exchanges: Sequence[Exchange], decision: int, override: Override
 ) -> PlayRun:
     """The same answers up to a decision, then another one."""
-    run = live_run(**{"parent_sha256": "0" * 64, "fork_decision": decision})
+    run = live_run(parent_sha256="0" * 64, fork_decision=decision)
     while run.pending is not None:
         number = run._decisions if isinstance(run.pending, Ask) else None
         if number == decision:
@@ -410,7 +438,9 @@ def fork_of(
     raise AssertionError(f"no decision {decision}")
 
 
-def opened_live(*, delay_s: float = 0.0, cycles: int = 14, scene: Any = None, **extra: Any) -> Opened:
+def opened_live(
+    *, delay_s: float = 0.0, cycles: int = 14, scene: Any = None, **extra: Any
+) -> Opened:
     """A live source with one entry."""
     return Opened(
         "furnished house",
@@ -432,7 +462,11 @@ def opened_recording(*, cycles: int = 14, scene: Any = None) -> Opened:
         (Entry("play", "episode 1 · full"),),
         Choice("play"),
         lambda _: Opening(
-            run.header, run.exchanges, run.footer, trace_sha256="ab" * 32, source="play.mcap",
+            run.header,
+            run.exchanges,
+            run.footer,
+            trace_sha256="ab" * 32,
+            source="play.mcap",
             scene=scene,
         ),
         fork=fork_of,

@@ -1,0 +1,207 @@
+from __future__ import annotations
+
+import queue
+import time
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from app.session import commands as c
+from app.session.branches import Origin
+from app.session.snapshot import Snapshot
+from app.session.worker import Session, StaleCommand
+from c2nav_engine.contract.outcome import Abstention, Ordering
+from tests.helpers import stage
+
+
+class Watched:
+    """A session whose snapshots can be waited for."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self._queue: queue.Queue[Snapshot] = queue.Queue()
+        session.subscribe(self._queue.put)
+        session.start()
+
+    def until(self, wanted: Callable[[Snapshot], bool]) -> Snapshot:
+        if wanted(self.session.snapshot):
+            return self.session.snapshot
+        while True:
+            snapshot = self._queue.get(timeout=20.0)
+            if wanted(snapshot):
+                return snapshot
+
+    def do(self, command: c.Command) -> None:
+        self.session.dispatch(command)
+
+
+@pytest.fixture
+def live() -> Iterator[Watched]:
+    session = Session(stage.opened_live())
+    yield Watched(session)
+    session.close()
+
+
+@pytest.fixture
+def recorded() -> Iterator[Watched]:
+    session = Session(stage.opened_recording())
+    yield Watched(session)
+    session.close()
+
+
+def proposed(number: int) -> Callable[[Snapshot], bool]:
+    return lambda s: (
+        s.proposal is not None and s.decision is not None and s.decision.number == number
+    )
+
+
+def test_it_stands_at_the_first_pending_decision_without_a_command(live: Watched):
+    snapshot = live.until(proposed(0))
+    assert snapshot.decision is not None
+    assert snapshot.decision.pending
+    assert len(snapshot.decision.facts.candidates) == 3
+
+
+def test_a_step_commits_the_proposal(live: Watched):
+    live.until(proposed(0))
+    live.do(c.Step())
+    snapshot = live.until(proposed(1))
+    made = snapshot.story.decisions[0]
+    assert made.ranked is not None
+    assert made.override is None
+    assert made.outcome == made.ranked.outcome
+
+
+def test_an_override_is_recorded_with_the_original(live: Watched):
+    live.until(proposed(0))
+    live.do(c.Arrange(tiers=(("left",), ("front",))))
+    live.until(lambda s: not s.draft.empty)
+    live.do(c.Commit(why="the door is there"))
+    snapshot = live.until(proposed(1))
+    made = snapshot.story.decisions[0]
+    assert made.override is not None
+    assert made.override.why == "the door is there"
+    assert made.outcome == Ordering.of("left", "front")
+    assert made.ranked is not None
+    assert made.ranked.outcome == Ordering.of("front", "left")
+
+
+def test_a_vetoed_view_cannot_be_ranked(live: Watched):
+    live.until(proposed(0))
+    live.do(c.Arrange(tiers=(("right",), ("left",))))
+    snapshot = live.until(lambda s: not s.draft.empty)
+    assert snapshot.draft.keys == ("left",)
+
+
+def test_none_of_these_is_a_fallback_and_not_a_choice(live: Watched):
+    live.until(proposed(0))
+    live.do(c.NoneOfThese())
+    live.until(lambda s: s.draft.none)
+    live.do(c.Commit())
+    snapshot = live.until(proposed(1))
+    assert isinstance(snapshot.story.decisions[0].outcome, Abstention)
+    assert snapshot.story.decisions[0].elected is None
+
+
+def test_a_command_for_a_state_that_is_gone_is_refused(live: Watched):
+    token = live.until(proposed(0)).token
+    live.do(c.Step(id=token))
+    live.until(proposed(1))
+    with pytest.raises(StaleCommand, match="read /api/state again"):
+        live.do(c.Commit(id=token))
+
+
+def test_running_to_a_lane_stops_at_its_first_decision(live: Watched):
+    live.until(proposed(0))
+    live.do(c.RunTo(until="transition"))
+    snapshot = live.until(lambda s: not s.playing and s.here.decision > 0)
+    assert snapshot.decision is not None
+    assert snapshot.decision.lane == 1
+    assert all(d.lane == 0 for d in snapshot.story.decisions[:-1])
+
+
+def test_running_to_the_end_ends_with_a_footer(live: Watched):
+    live.until(proposed(0))
+    live.do(c.RunTo(until="end"))
+    snapshot = live.until(lambda s: s.branch.footer is not None and not s.playing)
+    assert snapshot.story.pending is None
+
+
+def test_a_past_override_first_names_its_cost_then_forks(recorded: Watched):
+    recorded.do(c.Go(decision=3))
+    recorded.until(lambda s: s.here.decision == 3)
+    recorded.do(c.Press(key="left"))
+    recorded.until(lambda s: not s.draft.empty)
+    recorded.do(c.Commit())
+    offer = recorded.until(lambda s: s.offer is not None).offer
+    assert offer is not None
+    assert offer.decisions == 14
+    recorded.do(c.Commit())
+    snapshot = recorded.until(lambda s: s.branch.origin is Origin.FORK and s.proposal is not None)
+    assert snapshot.branch.parent == "b0"
+    assert snapshot.branch.fork_decision == 3
+    assert snapshot.story.decisions[3].override is not None
+    root = snapshot.branches[0]
+    assert root.origin is Origin.RECORDED
+    assert (
+        root.exchanges[: snapshot.story.decisions[3].exchange]
+        == (snapshot.branch.exchanges[: snapshot.story.decisions[3].exchange])
+    )
+
+
+def test_stepping_back_never_changes_what_happened(recorded: Watched):
+    before = recorded.session.snapshot.branches
+    for count in (5, -2, 3, -6):
+        recorded.do(c.Move(by="decision", count=count))
+    recorded.do(c.Go(step=7))
+    assert recorded.until(lambda s: s.here.step == 7).branches == before
+
+
+def test_moving_by_steps_visits_every_step(recorded: Watched):
+    for step in range(1, 6):
+        recorded.do(c.Move(by="step", count=1))
+        recorded.until(lambda s, step=step: s.here.step == step)
+
+
+def test_judgements_can_be_undone_and_redone(recorded: Watched):
+    recorded.do(c.Go(decision=2))
+    recorded.do(c.Verdict(value="wrong"))
+    assert recorded.until(lambda s: bool(s.judgements)).judgements[2].verdict == "wrong"
+    recorded.do(c.Undo())
+    recorded.until(lambda s: not s.judgements)
+    recorded.do(c.Redo())
+    assert recorded.until(lambda s: bool(s.judgements)).judgements[2].verdict == "wrong"
+
+
+def test_the_worker_is_never_held_up_by_a_model():
+    session = Session(stage.opened_live(delay_s=1.5))
+    watched = Watched(session)
+    try:
+        watched.until(lambda s: s.asking is not None)
+        started = time.monotonic()
+        watched.do(c.Camera(mode="top"))
+        watched.until(lambda s: s.view.camera == "top")
+        assert session.snapshot.asking is not None, f"took {time.monotonic() - started}"
+        watched.until(proposed(0))
+    finally:
+        session.close()
+
+
+def test_pictures_leave_the_machine_only_after_a_yes():
+    session = Session(stage.opened_live(sends_to="models.example"))
+    watched = Watched(session)
+    try:
+        assert watched.until(lambda s: bool(s.consent_to)).consent_to == "models.example"
+        assert watched.session.snapshot.asking is None
+        watched.do(c.Consent(allow=True))
+        watched.until(proposed(0))
+    finally:
+        session.close()
+
+
+def test_every_picture_of_the_state_is_in_the_album(recorded: Watched):
+    for decision in recorded.session.snapshot.story.decisions:
+        for candidate in decision.facts.candidates:
+            if candidate.picture is not None:
+                found = recorded.session.album.get(candidate.picture.sha256)
+                assert found == candidate.picture

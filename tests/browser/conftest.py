@@ -1,0 +1,30 @@
+"""One browser and one running inspector for all tests of the page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser
+
+from app.session.worker import Session
+from tests.helpers import stage
+from tests.helpers.page import Visit, chromium, inspector, visit
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    with chromium() as browser:
+        yield browser
+
+
+@pytest.fixture
+def live(browser: Browser) -> Iterator[tuple[Visit, Session]]:
+    with inspector(stage.opened_live()) as (url, session), visit(browser, url) as seen:
+        yield seen, session
+
+
+@pytest.fixture
+def recorded(browser: Browser) -> Iterator[tuple[Visit, Session]]:
+    with inspector(stage.opened_recording()) as (url, session), visit(browser, url) as seen:
+        yield seen, session
