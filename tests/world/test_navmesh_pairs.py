@@ -47,6 +47,7 @@ def test_no_question_is_no_answer(mesh: NavMesh):
 @pytest.mark.parametrize(
     ("pairs", "words"),
     [
+        ([], ["object with paths", "list"]),
         ({"paths": 3}, ["paths", "list", "int"]),
         ({"paths": [{}]}, ["paths[0]", "'raw'"]),
         ({"paths": [{"raw": [[0, 0, 0]]}]}, ["paths[0]", "two points"]),
@@ -56,7 +57,7 @@ def test_no_question_is_no_answer(mesh: NavMesh):
         ({"steps": [{"from": [0, 0, 0], "to": "there"}]}, ["steps[0]", "there"]),
     ],
 )
-def test_a_wrong_entry_is_named(mesh: NavMesh, pairs: dict[str, object], words: list[str]):
+def test_a_wrong_entry_is_named(mesh: NavMesh, pairs: object, words: list[str]):
     with pytest.raises(UsageError) as caught:
         query_pairs(mesh, pairs)
     for word in words:

@@ -90,9 +90,9 @@ def read_tile(cursor: Cursor, size: int) -> Tile:
     cursor.end = start + size
     tile = _sections(cursor, _header(cursor))
     for check in (_check_vertices, _check_polygons, _check_details, _check_nodes):
-        complaint = check(tile)
-        if complaint:
-            expected, _, came = complaint.partition(", came ")
+        broken = check(tile)
+        if broken is not None:
+            expected, came = broken
             raise cursor.error(f"in the tile that starts here {expected}", came, offset=start)
     cursor.offset, cursor.end = start + size, file_end
     return tile
@@ -140,42 +140,49 @@ def _sections(cursor: Cursor, header: Records) -> Tile:
     )
 
 
-def _check_vertices(tile: Tile) -> str:
+Broken = tuple[str, str]
+"""What was expected, and what came."""
+
+
+def _check_vertices(tile: Tile) -> Broken | None:
     for vertices in (tile.vertices, tile.detail_vertices):
         # Not "> limit": a comparison with nan is false, and nan must fail.
         bad = ~(np.abs(vertices) <= FARTHEST_M).all(axis=1)
         if bad.any():
-            return f"vertices within ±{FARTHEST_M:g} m, came {vertices[bad][0]}"
-    return ""
+            return f"vertices within ±{FARTHEST_M:g} m", f"{vertices[bad][0]}"
+    return None
 
 
-def _check_polygons(tile: Tile) -> str:
+def _check_polygons(tile: Tile) -> Broken | None:
     polygons = tile.polygons[tile.ground]
     count = polygons["corner_count"]
     if ((count < 3) | (count > MAX_CORNERS)).any():
-        return f"polygons of 3 to {MAX_CORNERS} corners, came {count[(count < 3) | (count > 6)][0]}"
+        return f"polygons of 3 to {MAX_CORNERS} corners", f"{count[(count < 3) | (count > 6)][0]}"
     used = np.arange(MAX_CORNERS) < count[:, None]
     corners = polygons["corners"][used]
     if (corners >= len(tile.vertices)).any():
-        return f"corners below {len(tile.vertices)}, came {corners.max()}"
+        return f"corners below {len(tile.vertices)}", f"{corners.max()}"
     neighbours = polygons["neighbours"][used].astype(np.int64)
     inside = neighbours[(neighbours != 0) & (neighbours & BORDER == 0)] - 1
     if (inside >= len(tile.polygons)).any():
-        return f"neighbours below {len(tile.polygons)}, came {inside.max()}"
+        return f"neighbours below {len(tile.polygons)}", f"{inside.max()}"
     if not tile.ground[inside].all():
-        return "surface polygons as neighbours, came an off-mesh connection"
-    return ""
+        return "surface polygons as neighbours", "an off-mesh connection"
+    return None
 
 
-def _check_details(tile: Tile) -> str:
+def _check_details(tile: Tile) -> Broken | None:
     ground = np.flatnonzero(tile.ground)
     if ground.size and ground[-1] >= len(tile.details):
-        return f"a detail mesh for each of {ground[-1] + 1} polygons, came {len(tile.details)}"
+        return f"a detail mesh for each of {ground[-1] + 1} polygons", f"{len(tile.details)}"
     details = tile.details[ground]
     count = details["triangle_count"].astype(np.int64)
     first = details["triangle_base"].astype(np.int64)
     if (first + count > len(tile.detail_triangles)).any():
-        return f"detail triangles below {len(tile.detail_triangles)}, came {(first + count).max()}"
+        return f"detail triangles below {len(tile.detail_triangles)}", f"{(first + count).max()}"
+    # Every polygon has its own; sharing would let a small file ask for any amount of memory.
+    if count.sum() > len(tile.detail_triangles):
+        return f"{len(tile.detail_triangles)} detail triangles in all", f"{count.sum()}"
     owner = np.repeat(np.arange(len(details)), count)
     inside = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
     vertex = tile.detail_triangles[first[owner] + inside, :3].astype(np.int64)
@@ -183,14 +190,14 @@ def _check_details(tile: Tile) -> str:
     sample = beyond + details["vertex_base"].astype(np.int64)[owner][:, None]
     wrong = (beyond >= 0) & (sample >= len(tile.detail_vertices))
     if wrong.any():
-        return f"detail vertices below {len(tile.detail_vertices)}, came {sample[wrong][0]}"
-    return ""
+        return f"detail vertices below {len(tile.detail_vertices)}", f"{sample[wrong][0]}"
+    return None
 
 
-def _check_nodes(tile: Tile) -> str:
+def _check_nodes(tile: Tile) -> Broken | None:
     leaves = tile.nodes["item"][tile.nodes["item"] >= 0]
     if (leaves >= len(tile.polygons)).any():
-        return f"bounding volumes of polygons below {len(tile.polygons)}, came {leaves.max()}"
+        return f"bounding volumes of polygons below {len(tile.polygons)}", f"{leaves.max()}"
     if not tile.ground[leaves].all():
-        return "bounding volumes of surface polygons, came an off-mesh connection"
-    return ""
+        return "bounding volumes of surface polygons", "an off-mesh connection"
+    return None
