@@ -23,7 +23,7 @@ class Colours:
     def __init__(self, seed: int) -> None:
         random = np.random.default_rng((seed, 0))
         woods = list(WOODS)
-        self._woods = [woods[i] for i in random.permutation(len(woods))[:2]]
+        self._woods: list[str] = [woods[i] for i in random.permutation(len(woods)).tolist()[:2]]
         self._used: dict[str, list[str]] = {}
 
     def tones(self, kind: str, random: np.random.Generator) -> Tones:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from c2nav_engine.errors import InternalError
-from c2nav_engine.world.builtin.looks import lacquer, lamp_glow, wood
+from c2nav_engine.world.builtin.looks import lacquer, lamp_glow, trim, wood
 from c2nav_engine.world.builtin.mesh import Look, Solid, box, cylinder, sheet
 from c2nav_engine.world.builtin.plan import (
     CEILING_M,
@@ -48,7 +48,7 @@ def ceiling_solids(room: Room, look: Look, *, under_hole: bool) -> list[Solid]:
     if under_hole:
         return []
     y = room.floor_m + CEILING_M
-    solids = [_level(look, rect, y, patch_m=0.8, up=False) for rect in room.rects]
+    solids = [_level(look, rect, y, patch_m=1.2, up=False) for rect in room.rects]
     for rect in room.rects:
         if min(rect.x1 - rect.x0, rect.z1 - rect.z0) > 1.1:
             x, z = rect.centre
@@ -107,7 +107,7 @@ def stair_solids(flight: Flight, look: Look) -> Iterator[Solid]:
         height = rise * (index + 1)
         centre = (middle, 0.0, z) if along_x else (x, 0.0, middle)
         size = (abs(run), height - 0.035, across) if along_x else (across, height - 0.035, abs(run))
-        yield box(lacquer("white"), size, centre)
+        yield box(trim(), size, centre)
         deep = abs(run) + 0.025
         tread = (deep, 0.035, across) if along_x else (across, 0.035, deep)
         # The nosing stands out towards the foot, as real treads do.
@@ -123,7 +123,7 @@ def _handrail(flight: Flight, slope: float) -> Iterator[Solid]:
     """A rail along one side of the flight."""
     rect, along_x = flight.rect, flight.foot.axis == "z"
     start, end = flight.foot.line, flight.top.line
-    length = math.hypot(end - start, slope * (end - start))
+    length = 0.96 * math.hypot(end - start, slope * (end - start))
     pitch = math.atan(slope)
     x, z = rect.centre
     rail = box(wood("walnut"), (length, 0.05, 0.05)).leaned(pitch if end > start else -pitch)

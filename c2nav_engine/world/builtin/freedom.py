@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import cast
 
 import numpy as np
 from scipy import ndimage
@@ -39,7 +40,7 @@ class Freedom:
         free = self._free.copy()
         for rect in rects:
             self._mark(rect.grown(_CLEAR_M - 0.06), free, value=False)
-        labels, _ = ndimage.label(free)
+        labels = _islands(free)
         at_doors = {int(labels[i, j]) for i, j in self._doors}
         if len(at_doors) != 1 or 0 in at_doors:
             return not self._doors
@@ -53,6 +54,12 @@ class Freedom:
 
     def _cell(self, x: float, z: float) -> tuple[int, int]:
         return int(np.abs(self._x - x).argmin()), int(np.abs(self._z - z).argmin())
+
+
+def _islands(free: np.ndarray) -> np.ndarray:
+    """Cells numbered by the connected piece they belong to, 0 where not free."""
+    label = cast("Callable[[np.ndarray], tuple[np.ndarray, int]]", ndimage.label)  # pyright: ignore[reportUnknownMemberType]
+    return label(free)[0]
 
 
 def _slab(wall: Wall) -> Rect:

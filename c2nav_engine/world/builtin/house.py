@@ -20,7 +20,8 @@ from c2nav_engine.world.builtin.light import baked
 from c2nav_engine.world.builtin.looks import lacquer, trim, wood
 from c2nav_engine.world.builtin.mesh import Look, Solid, projected_uvs, turn_about_y
 from c2nav_engine.world.builtin.placement import Item, furnish
-from c2nav_engine.world.builtin.plan import OUTSIDE, STAIRS, Layout, Plan, Room, Wall, resolve
+from c2nav_engine.world.builtin.plan import OUTSIDE, STAIRS, Layout, Plan, Room, Wall
+from c2nav_engine.world.builtin.resolve import resolve
 from c2nav_engine.world.builtin.walls import Finish, wall_solids
 from c2nav_engine.world.builtin.windows import add_windows
 from c2nav_engine.world.scene import Piece, Scene, scene_of

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -52,9 +53,25 @@ def episodes_in(plan: Plan, count: int, *, first_id: int) -> list[Episode]:
         episode_id = str(first_id + len(found))
         found.append(_episode(f"builtin/{plan.name}", episode_id, (route, told, start)))
         if len(found) == count:
-            return found
+            return _richest_first(found, first_id)
     message = f"house {plan.name}: expected {count} routes with words, came {len(found)}"
     raise InternalError(message)
+
+
+def _richest_first(episodes: list[Episode], first_id: int) -> list[Episode]:
+    """Renumbered so that a house opens with what shows most of it."""
+    ordered = sorted(
+        episodes,
+        key=lambda each: (
+            -min(len(each.leg_ends), 4),
+            -each.instruction.count(" on your "),
+            -(each.geodesic_m or 0.0),
+        ),
+    )
+    return [
+        replace(each, episode_id=str(first_id + k), trajectory_id=str(first_id + k))
+        for k, each in enumerate(ordered)
+    ]
 
 
 def surface_of(house: House) -> Surface:
@@ -91,7 +108,8 @@ def _told_routes(
 
 def _wanted(route: Route) -> float:
     """Probability of keeping a route: short ones through two rooms are plentiful and dull."""
-    return min(1.0, (route.geodesic_m - 2.0) / 7.0) * (0.5 if len(route.visits) == 2 else 1.0)
+    by_rooms = {2: 0.3, 3: 0.6}.get(len(route.visits), 1.0)
+    return by_rooms * min(1.0, (route.geodesic_m - 2.0) / 7.0)
 
 
 def _start(route: Route, random: np.random.Generator) -> Pose:

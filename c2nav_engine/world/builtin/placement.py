@@ -88,7 +88,7 @@ def furnish(layout: Layout, room: Room, colours: Colours) -> list[Item]:
     random = np.random.default_rng((layout.plan.seed, ord(room.letter), room.storey))
     furnisher = _Furnisher(layout, room, colours, random)
     for wish in RECIPES[room.kind]:
-        for _ in range(wish.count):
+        for _ in range(wish.count_in(room.area)):
             if random.random() < wish.chance:
                 furnisher.grant(wish)
     return furnisher.items

@@ -17,16 +17,28 @@ class Wish:
         spot: Where it goes best; "facing" is opposite the first thing of the room.
         chance: Probability that it is wanted at all.
         count: How many.
+        every_m2: One more for each so many square metres of the room; 0 for none.
     """
 
     kinds: tuple[str, ...]
     spot: Spot = "along a wall"
     chance: float = 1.0
     count: int = 1
+    every_m2: float = 0.0
+
+    def count_in(self, area_m2: float) -> int:
+        """How many a room of this size wants."""
+        return self.count + (int(area_m2 / self.every_m2) if self.every_m2 else 0)
 
 
-def _wish(*kinds: str, spot: Spot = "along a wall", chance: float = 1.0, count: int = 1) -> Wish:
-    return Wish(kinds, spot, chance, count)
+def _wish(
+    *kinds: str,
+    spot: Spot = "along a wall",
+    chance: float = 1.0,
+    count: int = 1,
+    every_m2: float = 0.0,
+) -> Wish:
+    return Wish(kinds, spot, chance, count, every_m2)
 
 
 _GREENERY = _wish("plant", "palm", spot="corner")
@@ -173,17 +185,18 @@ RECIPES: dict[str, tuple[Wish, ...]] = {
     "hallway": (
         _wish("console table", "bench", spot="along a wall"),
         _wish("vase", "pedestal", spot="corner"),
-        _wish("painting", count=3),
+        _wish("painting", count=2, every_m2=12.0),
         _wish("runner", spot="middle of the room", chance=0.7),
-        _wish("vase", "umbrella stand", "pedestal", spot="along a wall"),
-        _wish("chest", "vase", "ottoman", spot="along a wall"),
-        _wish("clock", "mirror", chance=0.6),
+        _wish("vase", "umbrella stand", "pedestal", "plant", every_m2=14.0),
+        _wish("chest", "ottoman", "bench", "globe", every_m2=20.0),
+        _wish("clock", "mirror", chance=0.8),
     ),
     "landing": (
         _wish("console table", "bench"),
         _wish("vase", "plant", "pedestal", spot="corner"),
-        _wish("painting", count=2),
-        _wish("pedestal", "chest", spot="along a wall"),
+        _wish("painting", count=2, every_m2=14.0),
+        _wish("pedestal", "chest", "ottoman", spot="along a wall"),
+        _wish("mirror", "clock"),
     ),
     "stairs": (),
 }

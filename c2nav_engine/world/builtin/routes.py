@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
@@ -41,9 +42,9 @@ class Trail:
         """Sample straight lines between corners."""
         points = np.array(corners)
         steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-        ends = np.concatenate([[0.0], np.cumsum(steps)])
-        count = max(2, math.ceil(ends[-1] / _FINE_M) + 1)
-        along = np.linspace(0.0, ends[-1], count)
+        ends = np.concatenate([np.zeros(1), np.cumsum(steps)])
+        length_m = float(ends[-1])
+        along: np.ndarray = np.linspace(0.0, length_m, max(2, math.ceil(length_m / _FINE_M) + 1))
         fine = np.stack([np.interp(along, ends, points[:, k]) for k in range(3)], axis=1)
         return Trail(fine, along)
 
@@ -74,6 +75,7 @@ class Visit:
         entry: The boundary it comes through; None for the first.
         turn_rad: Turn to the left just inside, against the way through the entry.
         exit_side_rad: How far left of the walking direction the way out opens; 0 for the last.
+        bend_rad: How far the way bends to the left inside, all corners together.
     """
 
     room: Room
@@ -82,6 +84,7 @@ class Visit:
     entry: Wall | None
     turn_rad: float
     exit_side_rad: float
+    bend_rad: float
 
     @property
     def length_m(self) -> float:
@@ -225,6 +228,7 @@ def visits_of(layout: Layout, trail: Trail) -> tuple[Visit, ...]:
                 entry=entry,
                 turn_rad=_turn(trail, (enters[index], leaves[index]), entry, room),
                 exit_side_rad=_exit_side(trail, (enters[index], leaves[index]), out, room),
+                bend_rad=_bend(trail, (enters[index], leaves[index])),
             )
         )
     return tuple(visits)
@@ -258,8 +262,20 @@ def _turn(trail: Trail, run: tuple[float, float], entry: Wall | None, room: Room
     if entry is None:
         return 0.0
     enter_m, leave_m = run
-    ahead = min(1.8, max(0.5, 0.7 * (leave_m - enter_m)))
-    return wrap_rad(trail.bearing_rad(enter_m, enter_m + ahead) - _through_rad(entry, room))
+    length_m = leave_m - enter_m
+    # Just behind a door the path still cuts its corner: the turn shows a step later.
+    low, high = enter_m + min(0.6, 0.3 * length_m), enter_m + min(2.0, 0.9 * length_m)
+    return wrap_rad(trail.bearing_rad(low, high) - _through_rad(entry, room))
+
+
+def _bend(trail: Trail, run: tuple[float, float]) -> float:
+    """Sum of turns between the first and the last metre of a stretch."""
+    low, high = run[0] + 0.8, run[1] - 0.8
+    if high - low < 2.0:
+        return 0.0
+    stops = np.arange(low, high, 0.5).tolist()
+    bearings = [trail.bearing_rad(stop, stop + 0.5) for stop in stops]
+    return sum(wrap_rad(b - a) for a, b in pairwise(bearings))
 
 
 def _exit_side(trail: Trail, run: tuple[float, float], out: Wall | None, room: Room) -> float:

@@ -90,7 +90,7 @@ def herringbone(rgb: Rgb) -> Texture:
     size, block = 256, 32
     row, column = np.mgrid[0:size, 0:size]
     stripe = column // (2 * block)
-    slanted = row + np.where(stripe % 2 == 0, column, -column)
+    slanted = row + column * (1 - 2 * (stripe % 2))
     index = (slanted // block) % 8
     tone = np.random.default_rng(12).uniform(0.84, 1.12, (4, 8))[stripe % 4, index]
     seam = (slanted % block < 2) | (column % (2 * block) < 2)

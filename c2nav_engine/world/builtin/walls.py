@@ -18,7 +18,7 @@ from c2nav_engine.world.builtin.plan import (
     Wall,
 )
 
-_PATCH_M = 0.5
+_PATCH_M = 0.6
 """Walls are cut into patches of about this size so that light can vary over them."""
 _HALF = WALL_M / 2
 _END = _HALF - 0.003
@@ -104,8 +104,14 @@ def _spans(wall: Wall, top: float) -> Iterator[tuple[float, float, float, float]
 
 def _ends(wall: Wall, finish: Finish) -> Iterator[Solid]:
     """Caps, for walls that end in an open space."""
-    for at in (wall.low - _END, wall.high + _END):
-        yield _slab(wall, finish.before, (at, at, 0.0, CEILING_M))
+    rows = math.ceil(CEILING_M / _PATCH_M)
+    for at, outward in ((wall.low - _END, -1.0), (wall.high + _END, 1.0)):
+        # Facing outward, the picture's right runs along `before` to `after` or back.
+        sign = outward if wall.axis == "z" else -outward
+        x, z = wall.point(at, -sign * _HALF)
+        across = (0.0, 0.0, sign * WALL_M) if wall.axis == "x" else (sign * WALL_M, 0.0, 0.0)
+        sides = (across, (0.0, CEILING_M, 0.0))
+        yield sheet(finish.before, (x, _base(wall), z), sides, parts=(1, rows))
 
 
 def _slab(

@@ -15,15 +15,17 @@ import numpy as np
 
 from c2nav_engine.contract.route import parse_english
 from c2nav_engine.world.builtin.house import House
-from c2nav_engine.world.builtin.landmarks import passed
+from c2nav_engine.world.builtin.landmarks import Landmark, passed
 from c2nav_engine.world.builtin.routes import Route, Visit
 
-_SLIGHT_RAD, _CLEAR_RAD = math.radians(32.0), math.radians(58.0)
+_SLIGHT_RAD, _CLEAR_RAD = math.radians(25.0), math.radians(58.0)
 _INSIDE_M = 0.4
 """A leg into a room ends this far behind its door."""
+_LONG_M = 5.5
+"""A way through one room longer than this is told in two legs where it can be."""
 _LAST_M = 1.6
 """Length of the last leg where the way through the last room is long enough to be split."""
-_FEWEST_WORDS, _MOST_WORDS = 14, 33
+_FEWEST_WORDS, _MOST_WORDS = 14, 32
 _WAYS: dict[str, tuple[str, ...]] = {
     "hallway": ("down", "along", "down"),
     "landing": ("along", "across"),
@@ -60,17 +62,30 @@ class Told:
 def tell(
     house: House, route: Route, heading_rad: float, random: np.random.Generator
 ) -> Told | None:
-    """Words for a route that starts with a heading; None when no try reads well."""
-    for _ in range(12):
-        legs = _Teller(house, route, random).legs(heading_rad)
-        text = _sentences([leg.text for leg in legs], random)
-        words = len(text.split())
-        if not (2 <= len(legs) <= 5 and _FEWEST_WORDS <= words <= _MOST_WORDS):
-            continue
-        ends_m = tuple(leg.end_m for leg in legs)
-        if len(parse_english(text).legs) == len(legs) and _rising(ends_m):
-            return Told(text, ends_m)
+    """Words for a route that starts with a heading; None when no try reads well.
+
+    Of several versions the one that names most of what is passed is kept.
+    """
+    versions = [_version(house, route, heading_rad, random) for _ in range(10)]
+    told = [version for version in versions if version is not None]
+    return max(told, key=_named, default=None)
+
+
+def _version(
+    house: House, route: Route, heading_rad: float, random: np.random.Generator
+) -> Told | None:
+    legs = _Teller(house, route, random).legs(heading_rad)
+    text = _sentences([leg.text for leg in legs], random)
+    ends_m = tuple(leg.end_m for leg in legs)
+    fits = 2 <= len(legs) <= 5 and _FEWEST_WORDS <= len(text.split()) <= _MOST_WORDS
+    if fits and _rising(ends_m) and len(parse_english(text).legs) == len(legs):
+        return Told(text, ends_m)
     return None
+
+
+def _named(told: Told) -> int:
+    """How many things beside the path the text names."""
+    return sum(told.text.count(word) for word in (" past ", " over ", " on your "))
 
 
 def _rising(ends_m: tuple[float, ...]) -> bool:
@@ -83,13 +98,13 @@ def _sentences(legs: Sequence[str], random: np.random.Generator) -> str:
     for index, leg in enumerate(legs[1:], 1):
         last = index == len(legs) - 1
         choice = float(random.random())
-        # "…, and turn left and …" reads badly: what begins with a turn begins a sentence.
+        # "… and turn left and …" reads badly: what begins with a turn begins a sentence.
         turning = leg.startswith("turn")
         if last and not turning and choice < 0.5:
             text += f" and {leg}"
-        elif choice < 0.3:
+        elif choice < 0.3 and ", then" not in text:
             text += f", then {leg}"
-        elif choice < 0.45:
+        elif choice < 0.45 and ". Then" not in text:
             text += f". Then {leg}"
         else:
             text += f". {leg[0].upper()}{leg[1:]}"
@@ -118,7 +133,7 @@ class _Teller:
                 legs.append(Leg(_turned(visit.turn_rad, text), following.leave_m + _INSIDE_M))
                 index += 2
             else:
-                legs.append(self._middle(visit, following))
+                legs += self._middle(visit, following)
                 index += 1
         return legs + self._last(visits[-1])
 
@@ -148,6 +163,8 @@ class _Teller:
         if visit.length_m > 2.2 and self._random.random() < 0.8:
             beside = self._beside(visit, 1)
         choices = [f"walk out of the {room} {into}", f"exit the {room} {into}"]
+        if visit.room.kind in _WAYS:
+            choices = [f"go from the {room} {into}", f"walk from the {room} {into}"]
         if beside:
             choices = [f"walk{beside} and {into}", f"go{beside} and {into}"]
         elif following.entry is not None and _passage(following):
@@ -158,12 +175,12 @@ class _Teller:
             ]
         return self._one_of(*choices)
 
-    def _middle(self, visit: Visit, following: Visit) -> Leg:
+    def _middle(self, visit: Visit, following: Visit) -> list[Leg]:
         end_m = _end_of(visit, following)
         if visit.room.kind == "stairs":
-            return Leg(self._stairs(visit, following), end_m)
+            return [Leg(self._stairs(visit, following), end_m)]
         if visit.length_m >= 2.3:
-            return Leg(_turned(visit.turn_rad, self._along(visit, following)), end_m)
+            return self._through(visit, following, end_m)
         if following.room.kind == "stairs":
             text = "go to the stairs"
         elif abs(visit.turn_rad) < _SLIGHT_RAD:
@@ -171,13 +188,39 @@ class _Teller:
             text += f" the {visit.room.name} {_into(following)}"
         else:
             text = self._one_of("go", "walk") + f" {_into(following)}" + self._exit_side(visit)
-        return Leg(_turned(visit.turn_rad, text), end_m)
+        return [Leg(_turned(visit.turn_rad, text), end_m)]
+
+    def _through(self, visit: Visit, following: Visit, end_m: float) -> list[Leg]:
+        """The way through a room, in two legs where something stands between them."""
+        bent = abs(visit.bend_rad) > _CLEAR_RAD
+        first = self._halfway(visit) if visit.length_m > _LONG_M and not bent else None
+        if first is None:
+            return [Leg(_turned(visit.turn_rad, self._along(visit, following)), end_m)]
+        self._told.add(first.item.phrase)
+        verb = self._one_of("walk", "go", "head")
+        way = self._one_of(*_WAYS.get(visit.room.kind, ("through", "across")))
+        text = f"{verb} {way} the {visit.room.name} to the {first.item.phrase}"
+        text += f" on your {first.side}"
+        onward = self._one_of("continue", "keep going", "go on") + f" {_into(following)}"
+        onward += self._exit_side(visit)
+        return [Leg(_turned(visit.turn_rad, text), first.along_m), Leg(onward, end_m)]
+
+    def _halfway(self, visit: Visit) -> Landmark | None:
+        """Something beside the middle of a long way."""
+        for each in passed(self._house, self._route.trail, visit):
+            share = (each.along_m - visit.enter_m) / visit.length_m
+            if each.side and 0.3 < share < 0.75 and each.item.phrase not in self._told:
+                return each
+        return None
 
     def _along(self, visit: Visit, following: Visit) -> str:
         """Words for the way through a room or corridor to the next one."""
         verb = self._one_of("walk", "go", "continue", "head", "walk")
         ways = _WAYS.get(visit.room.kind, ("through", "across"))
         text = f"{verb} {self._one_of(*ways)} the {visit.room.name}"
+        if visit.room.kind in _WAYS and abs(visit.bend_rad) > _CLEAR_RAD:
+            corner = "left" if visit.bend_rad > 0 else "right"
+            text = f"follow the {visit.room.name} around to the {corner}"
         beside = self._beside(visit, 2 if visit.length_m > 4.5 else 1)
         if following.room.kind == "stairs":
             return text + beside + self._one_of(" to the stairs", " to the foot of the stairs")

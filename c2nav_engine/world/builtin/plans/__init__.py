@@ -1,0 +1,1 @@
+"""The built-in houses as drawn, one a file."""
