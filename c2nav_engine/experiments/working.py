@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from c2nav_engine.episodes.profile import profile_named
-from c2nav_engine.errors import C2NavError, RankerStopped
+from c2nav_engine.errors import C2NavError, InputError, RankerStopped
 from c2nav_engine.experiments.columns import Row
 from c2nav_engine.experiments.rankers import seats_for
 from c2nav_engine.experiments.spec import Setting, Task
@@ -31,12 +31,14 @@ class Finished:
         row: Its row of `episodes.csv`.
         error: Why it failed; "" when it did not.
         stops: No further task makes sense (quota, rejected key).
+        bad_input: The episode or its scene cannot be used as it is.
     """
 
     key: str
     row: Row
     error: str = ""
     stops: bool = False
+    bad_input: bool = False
 
 
 def source_of(setting: Setting) -> Source:
@@ -88,7 +90,13 @@ def work(task: Task, run: Path) -> Finished:
         if episode_run is not None and episode_run.footer is None:
             episode_run.end(EpisodeOutcome.ERROR, str(error))
         row = _row(task, bench, episode_run)
-        return Finished(task.key, row, str(error), stops=isinstance(error, RankerStopped))
+        return Finished(
+            task.key,
+            row,
+            str(error),
+            stops=isinstance(error, RankerStopped),
+            bad_input=isinstance(error, InputError),
+        )
     finally:
         if episode_run is not None:
             episode_run.close()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from pathlib import Path
 
 import pytest
 
@@ -14,7 +15,7 @@ INSPECTS = {(1, 0, 0), (0, 1, 0)}
 
 
 @pytest.mark.parametrize("row", list(itertools.product(CODES, repeat=3)))
-def test_row(row):
+def test_row(row: tuple[int, int, int]):
     wanted = Verdict.STOP if row in STOPS else Verdict.INSPECT if row in INSPECTS else Verdict.HOLD
     assert verdict_of(Evidence(*row)) is wanted
 
@@ -30,3 +31,14 @@ def test_more_evidence_never_turns_a_stop_into_less():
             if row[place] < 1 and not (place == 2 and row[2] == -1):
                 more = (*row[:place], row[place] + 1, *row[place + 1 :])
                 assert order[LADDER[more]] >= order[LADDER[row]]
+
+
+def test_the_documentation_shows_the_same_table():
+    page = (Path(__file__).parents[2] / "docs" / "arriving.md").read_text(encoding="utf-8")
+    cells = [
+        [cell.strip().replace("−", "-") for cell in line.strip("|").split("|")]
+        for line in page.splitlines()
+        if line.startswith("| ") and line.count("|") == 5 and "look-back" not in line
+    ]
+    table = {tuple(map(int, row[:3])): row[3] for row in cells}
+    assert table == {row: verdict.value for row, verdict in LADDER.items()}
