@@ -21,6 +21,7 @@ COMMANDS = (
     "episodes",
     "inspect",
     "run",
+    "report",
     "scene",
     "replay",
     "question",

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 from c2nav_engine.episodes.profile import profile_named
 from c2nav_engine.errors import UsageError
+from c2nav_engine.experiments.asking import ASKING_OPTIONS
 from c2nav_engine.experiments.rankers import DEFAULT_RANKER, RANKERS
 from c2nav_engine.navigator.variants import preset
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Setting:
     """What all tasks of a run share; plain values, so that it travels to any worker.
 
@@ -49,8 +51,18 @@ class Setting:
             message = f"expected a ranker ({', '.join(RANKERS)}), came {self.ranker!r}"
             raise UsageError(message)
 
+    @cached_property
+    def identity(self) -> str:
+        """Everything that decides a result, as JSON.
 
-@dataclass(frozen=True, slots=True)
+        How widely to ask and when to stop does not: a run that used up its budget is resumed with
+        a larger one.
+        """
+        options = {k: v for k, v in self.ranker_options.items() if k not in ASKING_OPTIONS}
+        return json.dumps(asdict(self) | {"ranker_options": options}, sort_keys=True)
+
+
+@dataclass(frozen=True)
 class Task:
     """One episode under one variant and seed.
 
@@ -59,24 +71,25 @@ class Task:
         episode_id: Episode.
         variant: Preset.
         seed: Run seed.
+        scene_id: The episode's scene, so that workers keep to one; "" when not known.
     """
 
     setting: Setting
     episode_id: str
     variant: str
     seed: int
+    scene_id: str = ""
 
-    @property
+    @cached_property
     def key(self) -> str:
         """Hash of everything that decides the result; equal configs share it across names."""
-        facts = asdict(self) | {"variant": "", "config": preset(self.variant).sha256()}
-        return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()
+        facts = [self.setting.identity, self.episode_id, config_sha256(self.variant), self.seed]
+        return hashlib.sha256(json.dumps(facts).encode()).hexdigest()
 
     @property
     def name(self) -> str:
         """Stem of the trace file."""
-        safe = "".join(c if c.isalnum() or c in "-_" else "_" for c in self.episode_id)
-        return f"{safe}.{self.variant}.{self.seed}"
+        return trace_name(self.episode_id, self.variant, self.seed)
 
     def trace(self, run: Path) -> Path:
         """Where its trace stands in a run folder."""
@@ -92,26 +105,54 @@ class RunSpec:
         episodes: Episode ids in source order.
         variants: Presets.
         seeds: Seeds.
+        scenes: Scene id of each episode; () when not known.
     """
 
     setting: Setting
     episodes: tuple[str, ...]
     variants: tuple[str, ...]
     seeds: tuple[int, ...]
+    scenes: tuple[str, ...] = ()
 
     def tasks(self) -> tuple[Task, ...]:
-        """All tasks; neighbours share a scene where the source lists them so."""
+        """All tasks, in the order of the run's tables."""
+        scenes = self.scenes or ("",) * len(self.episodes)
         return tuple(
-            Task(self.setting, episode, variant, seed)
+            Task(self.setting, episode, variant, seed, scene)
             for variant in self.variants
             for seed in self.seeds
-            for episode in self.episodes
+            for episode, scene in zip(self.episodes, scenes, strict=True)
         )
 
+    def sha256(self) -> str:
+        """Hash of what decides the results; the manifest of a resumed run must have the same."""
+        facts = [self.setting.identity, self.episodes, self.variants, self.seeds]
+        return hashlib.sha256(json.dumps(facts).encode()).hexdigest()
 
-def distinct(tasks: Sequence[Task]) -> dict[str, list[Task]]:
+
+@lru_cache(maxsize=64)
+def config_sha256(variant: str) -> str:
+    """Hash of a preset's config; raises `UsageError` for an unknown one."""
+    return preset(variant).sha256()
+
+
+def trace_name(episode_id: str, variant: str, seed: int) -> str:
+    """Stem of a trace file, whatever characters the episode's id holds."""
+    safe = "".join(c if c.isalnum() or c in "-_" else "_" for c in episode_id)
+    return f"{safe}.{variant}.{seed}"
+
+
+def distinct(tasks: Iterable[Task]) -> dict[str, list[Task]]:
     """Tasks by key: presets with one config are run once and appear under both names."""
     grouped: dict[str, list[Task]] = {}
     for task in tasks:
         grouped.setdefault(task.key, []).append(task)
     return grouped
+
+
+def by_scene(tasks: Sequence[Task]) -> list[Task]:
+    """The same tasks with those of one scene together, scenes in order of first appearance."""
+    places: dict[str, int] = {}
+    for task in tasks:
+        places.setdefault(task.scene_id, len(places))
+    return sorted(tasks, key=lambda task: places[task.scene_id])

@@ -112,6 +112,6 @@ def _run(folder: Path, manifest: dict[str, Any], rows: tuple[Row, ...]) -> Run:
 
 
 def _sensing(setting: Mapping[str, Any]) -> str:
-    usual = {"odometry_noise": False, "depth_noise": False, "sliding": True}
+    usual = {"odometry_noise": 0.0, "depth_noise": 0.0, "sliding": True}
     odd = [name for name in _SENSING if setting.get(name, usual[name]) != usual[name]]
     return ", ".join(f"{name.replace('_', ' ')} {setting[name]}" for name in odd)

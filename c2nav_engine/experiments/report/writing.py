@@ -1,0 +1,88 @@
+"""Writes a report: one self-contained page, Markdown, CSV, LaTeX and plots."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+from c2nav_engine.experiments.report.content import Chapter, Report, report_of
+from c2nav_engine.experiments.report.plots import Plot, write_plots
+from c2nav_engine.experiments.report.reading import read_run
+from c2nav_engine.experiments.report.writing_csv import write_csv
+from c2nav_engine.experiments.report.writing_text import latex, markdown
+
+TEMPLATE = Path(__file__).with_name("page.html.j2")
+
+
+def write_report(folders: Sequence[Path], out: Path) -> Report:
+    """Read runs and write `report.html`, `report.md`, `csv/`, `latex/` and `plots/` below `out`.
+
+    Raises:
+        UsageError: A folder is no run.
+    """
+    report = report_of([read_run(folder) for folder in folders])
+    places = {name: out / name for name in ("csv", "latex", "plots")}
+    for place in places.values():
+        place.mkdir(parents=True, exist_ok=True)
+    plots = [write_plots(chapter, places["plots"]) for chapter in report.chapters]
+    write_csv(report, places["csv"])
+    for chapter in report.chapters:
+        for grid in chapter.grids():
+            path = places["latex"] / f"{chapter.key}{grid.key}.tex"
+            path.write_text(latex(grid), encoding="utf-8")
+    (out / "report.md").write_text(_markdown(report), encoding="utf-8")
+    (out / "report.html").write_text(_html(report, plots), encoding="utf-8")
+    return report
+
+
+def _markdown(report: Report) -> str:
+    parts = ["# Report\n"]
+    parts += [f"- {_run_line(report, place)}\n" for place in range(len(report.runs))]
+    for chapter in report.chapters:
+        parts.append(f"\n## {chapter.title}\n\n")
+        parts += [f"{note}\n\n" for note in chapter.notes]
+        parts += [markdown(grid) + "\n" for grid in chapter.grids()]
+    return "".join(parts)
+
+
+def _html(report: Report, plots: Sequence[Sequence[Plot]]) -> str:
+    environment = jinja2.Environment(
+        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
+    return template.render(
+        runs=[_run_line(report, place) for place in range(len(report.runs))],
+        chapters=[
+            _chapter(chapter, drawn) for chapter, drawn in zip(report.chapters, plots, strict=True)
+        ],
+    )
+
+
+def _chapter(chapter: Chapter, plots: Sequence[Plot]) -> dict[str, Any]:
+    return {
+        "title": chapter.title,
+        "notes": chapter.notes,
+        "grids": list(chapter.grids()),
+        "plots": [{"title": plot.title, "svg": _inline(plot.svg)} for plot in plots],
+    }
+
+
+def _inline(svg: Path) -> Markup:
+    """The drawing without its XML prologue; matplotlib wrote it a moment ago."""
+    text = svg.read_text(encoding="utf-8")
+    return Markup(text[text.index("<svg") :])  # noqa: S704
+
+
+def _run_line(report: Report, place: int) -> str:
+    run = report.runs[place]
+    manifest = run.manifest
+    variants = ", ".join(run.configs)
+    return (
+        f"{run.folder.name}: {run.ranker} · {run.protocol.words} · {variants} · "
+        f"{len(run.rows)} rows · version {manifest['code_version']} · "
+        f"spec {str(manifest['spec_sha256'])[:12]}"
+    )
