@@ -24,6 +24,7 @@ from c2nav_engine.runner.reshell import source_of_record
 from c2nav_engine.runner.source import Source
 from c2nav_engine.runner.worlds import Worlds, WorldsConfig
 from c2nav_engine.world.scene import Scene
+from c2nav_engine.world.surface import Surface
 
 INSPECTED = Path("logs") / "inspected"
 """Where live episodes and forks of the inspector are recorded, below the working folder."""
@@ -155,6 +156,9 @@ def _recorded(path: Path, scenes: Path | None) -> Opening:
     def load() -> Scene:
         return source.scene(scene_id)
 
+    def floor() -> Surface:
+        return Worlds(source, WorldsConfig(trace.header.profile)).of(scene_id).surface
+
     return Opening(
         header=trace.header,
         exchanges=trace.exchanges,
@@ -162,6 +166,7 @@ def _recorded(path: Path, scenes: Path | None) -> Opening:
         trace_sha256=trace.sha256,
         source=path.name,
         scene=None if why else load,
+        surface=None if why else floor,
         no_scene=why,
     )
 

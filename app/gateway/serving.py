@@ -69,11 +69,23 @@ def application(session: Session, shell: Shell, *, names: tuple[str, ...] = ()) 
         docs_url=None,
         redoc_url=None,
     )
+    app.state.feed = feed
     app.include_router(api(session, feed))
     app.include_router(page.router())
     _serve_assets(app, assets())
     app.add_middleware(Doors, names=names)
     return app
+
+
+class Server(uvicorn.Server):
+    """Ends the event streams before it waits for connections to close: they never would."""
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Stop serving."""
+        feed = getattr(getattr(self.config.app, "state", None), "feed", None)
+        if isinstance(feed, Feed):
+            feed.close()
+        await super().shutdown(sockets)
 
 
 def _serve_assets(app: FastAPI, files: dict[str, Asset]) -> None:
@@ -129,7 +141,7 @@ def serve(
             ready(address)
         if not no_browser and _has_display():
             threading.Timer(0.5, webbrowser.open, (address.url,)).start()
-        uvicorn.Server(config).run(sockets=[listener])
+        Server(config).run(sockets=[listener])
     finally:
         session.close()
         shell.close()

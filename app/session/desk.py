@@ -11,12 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from app.session.assessing import Assessor, assessor_of
 from app.session.branches import Branch, Origin
 from app.session.draft import Draft
 from app.session.judging import Bench
 from app.session.opened import Choice, Opened, Opening, Run
 from app.session.pictures import Album
-from app.session.snapshot import Chooser, Notice, Snapshot
+from app.session.snapshot import Assessment, Chooser, Notice, Snapshot
 from app.session.story import Story, story_of
 from c2nav_engine.errors import C2NavError
 from c2nav_engine.navigator.requests import Ask
@@ -58,6 +59,8 @@ class Desk:
         self.allowed = not opened.sends_to
         self.commit_when_answered = False
         self.due_s = 0.0
+        self.assessor: Assessor | None = None
+        self.assessing = False
         self._generation = 0
         self._branch_serial = 0
         self.snapshot = self._open(opened.first)
@@ -100,6 +103,7 @@ class Desk:
         self._read(branch)
         if opening.scene is not None:
             self._fetch(opening.scene)
+        self.assessor = assessor_of(opening)
         return Snapshot(
             version=0,
             chooser=Chooser(
@@ -172,6 +176,36 @@ class Desk:
             fields |= {"branch": branch, "story": story, "parent": self.stories.get(branch.parent)}
             fields["stop"] = min(self.snapshot.stop, len(story.stops) - 1)
         self.change(**fields)
+        self.assess(branch.branch_id)
+
+    def assess(self, branch_id: str) -> None:
+        """Measure what was decided since, in the background; one task at a time."""
+        assessor = self.assessor
+        if assessor is None or self.assessing:
+            return
+        generation, story = self._generation, self.stories[branch_id]
+        known = dict(self.snapshot.assessed.get(branch_id, {}))
+        if sum(not decision.pending for decision in story.decisions) == len(known):
+            return
+        self.assessing = True
+
+        def task() -> Message:
+            fresh = assessor.assess(story, known)
+            return lambda desk: desk.take_assessed(generation, branch_id, known | fresh)
+
+        self.hands.background(task)
+
+    def take_assessed(
+        self, generation: int, branch_id: str, assessments: dict[int, Assessment]
+    ) -> None:
+        """What the truth says of a branch came."""
+        self.assessing = False
+        if generation != self._generation:
+            return
+        grown = len(assessments) > len(self.snapshot.assessed.get(branch_id, {}))
+        if grown:
+            self.change(assessed={**self.snapshot.assessed, branch_id: assessments})
+            self.assess(self.snapshot.branch.branch_id)
 
     def stand(self, stop: int, branch_id: str = "") -> None:
         """Stand at a stop of a branch; an unfinished ranking of another decision is dropped."""

@@ -44,6 +44,7 @@ def _open(desk: Desk, command: c.Open) -> None:
         )
     )
     driving.settle(desk, desk.snapshot.branch.branch_id)
+    desk.assess(desk.snapshot.branch.branch_id)
 
 
 def _press(desk: Desk, command: c.Press) -> None:

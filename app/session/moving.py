@@ -8,7 +8,7 @@ from app.session import driving
 from app.session.decisions import LANES, Decision
 from app.session.desk import Desk
 from app.session.differing import disagrees
-from app.session.snapshot import Snapshot
+from app.session.snapshot import BAD_M, Snapshot
 
 STEP_S = 0.14
 """Playing: time at a low-level step."""
@@ -123,8 +123,9 @@ def _suspect(desk: Desk, *, worst: bool) -> None:
     if not suspects:
         desk.say("No suspect decision in this branch")
         return
-    found = suspects[0] if worst else min(suspects, key=lambda s: s.decision)
-    desk.stand(desk.snapshot.story.stop_of_decision(found.decision))
+    over = [s.decision for s in suspects if (s.regret_m or 0.0) >= BAD_M]
+    first = min(over, default=suspects[0].decision)
+    desk.stand(desk.snapshot.story.stop_of_decision(suspects[0].decision if worst else first))
 
 
 def _first(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
 from c2nav_engine.contract.prompt import Ranked
@@ -11,6 +11,7 @@ from c2nav_engine.navigator.requests import Request
 from c2nav_engine.runner.exchange import Exchange, Override
 from c2nav_engine.runner.record import Footer, Header
 from c2nav_engine.world.scene import Scene
+from c2nav_engine.world.surface import Surface
 
 
 class Run(Protocol):
@@ -91,6 +92,7 @@ class Opening:
         trace_sha256: Digest of the recording.
         source: File name of the recording.
         scene: Loads the scene for display; None where it is not to be had.
+        surface: Loads the floor, for suspects; None where it is not to be had.
         no_scene: Why there is no scene, and what to do about it.
     """
 
@@ -101,6 +103,7 @@ class Opening:
     trace_sha256: str = ""
     source: str = ""
     scene: Callable[[], Scene] | None = None
+    surface: Callable[[], Surface] | None = None
     no_scene: str = ""
 
 
@@ -121,7 +124,6 @@ class Opened:
         variants: Names to choose from; empty for recordings.
         rankers: Names to choose from; empty for recordings.
         sends_to: Host outside this machine that pictures would go to; "" for none.
-        goal_distance: Header → geodesic distance to the goal, for suspects.
     """
 
     title: str
@@ -132,4 +134,3 @@ class Opened:
     variants: tuple[str, ...] = ()
     rankers: tuple[str, ...] = ()
     sends_to: str = ""
-    extra: dict[str, str] = field(default_factory=dict[str, str])

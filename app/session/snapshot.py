@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from app.session.branches import Branch
@@ -71,18 +72,34 @@ class Judgement:
 
 
 @dataclass(frozen=True, slots=True)
-class Suspect:
-    """A decision that may have been the wrong turn (evaluation side; never shown blind).
+class Assessment:
+    """One decision held against the truth (evaluation side; never shown to who judges blind).
 
     Attributes:
         decision: Which one.
-        regret_m: Geodesic metres given away against the best offered alternative; None unknown.
-        words: "nothing good offered", "vetoed", "early", … ; "" where the regret says it.
+        regret_m: Geodesic metres given away against the best offered alternative; None where
+            that means nothing.
+        words: Why no answer could have been good, or "early" and "late" of a transition.
+        off_path_m: Distance from the reference path; None without one.
     """
 
     decision: int
-    regret_m: float | None
+    regret_m: float | None = None
     words: str = ""
+    off_path_m: float | None = None
+
+
+SUSPECT_M = 0.25
+"""Regret below this is noise of a bundle's length [C]."""
+
+BAD_M = 1.0
+"""The first decision over this is where `B` goes."""
+
+
+def suspects_of(assessments: Mapping[int, Assessment]) -> tuple[Assessment, ...]:
+    """Decisions worth a look, worst first; faults of the controller follow those of answers."""
+    worth = [a for a in assessments.values() if (a.regret_m or 0.0) >= SUSPECT_M or a.words]
+    return tuple(sorted(worth, key=lambda a: (-(a.regret_m or 0.0), a.decision)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +154,7 @@ class Snapshot:
         no_scene: Why there is no scene; "" where there is one or it is on its way.
         scene_serial: Counts the scenes that came.
         parent: For a fork, the story it left.
-        suspects: Decisions of the branch in view worth a look, worst first.
+        assessed: Branch → decision → what the truth says of it.
     """
 
     version: int
@@ -161,7 +178,9 @@ class Snapshot:
     no_scene: str = ""
     scene_serial: int = 0
     parent: Story | None = None
-    suspects: tuple[Suspect, ...] = ()
+    assessed: dict[str, dict[int, Assessment]] = field(
+        default_factory=dict[str, dict[int, Assessment]]
+    )
 
     @property
     def here(self) -> Stop:
@@ -172,6 +191,16 @@ class Snapshot:
     def decision(self) -> Decision | None:
         """The decision in view: the one here, or the last one before."""
         return self.story.decision_at(self.stop)
+
+    @property
+    def assessments(self) -> dict[int, Assessment]:
+        """What the truth says of the decisions of the branch in view, as far as it is known."""
+        return self.assessed.get(self.branch.branch_id, {})
+
+    @property
+    def suspects(self) -> tuple[Assessment, ...]:
+        """Decisions of the branch in view that are worth a look, worst first."""
+        return suspects_of(self.assessments)
 
     @property
     def proposal(self) -> Ranked | None:

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from app.session.decisions import Decision
-from app.session.snapshot import Judgement, Snapshot
+from app.session.snapshot import SUSPECT_M, Judgement, Snapshot
 from app.session.story import Story
 from app.session.wording import is_fault, outcome_words, slot_words
 from c2nav_engine.contract.outcome import Ordering
@@ -34,8 +34,8 @@ def timeline_of(snapshot: Snapshot) -> Json:
         "legs": _legs(story),
         "regret": [
             {"decision": s.decision, "step": story.decisions[s.decision].step, "m": s.regret_m}
-            for s in snapshot.suspects
-            if s.regret_m is not None and s.decision < len(story.decisions)
+            for s in snapshot.assessments.values()
+            if s.regret_m is not None and s.regret_m >= SUSPECT_M
         ],
     }
 

@@ -59,7 +59,7 @@ class Session:
 
     def start(self) -> None:
         """Begin to work; the first pending decision is reached without a command."""
-        self._inbox.put(lambda desk: driving.settle(desk, desk.snapshot.branch.branch_id))
+        self._inbox.put(_begin)
         self._worker.start()
 
     def close(self) -> None:
@@ -139,3 +139,10 @@ class Session:
             log.exception("a background task failed")
             problem = f"{type(error).__name__}: {error}"
             return lambda desk: desk.say(problem, fault=True)
+
+
+def _begin(desk: Desk) -> None:
+    """Go to the first question, and hold what is recorded already against the truth."""
+    branch_id = desk.snapshot.branch.branch_id
+    driving.settle(desk, branch_id)
+    desk.assess(branch_id)

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import threading
+
 import pytest
 from playwright.sync_api import Browser
 
@@ -148,8 +150,9 @@ def test_dark_follows_the_system(browser: Browser):
 
 
 def test_the_page_says_what_it_waits_for_and_stays_alive(browser: Browser):
+    gate = threading.Event()
     with (
-        inspector(stage.opened_live(delay_s=4.0)) as (url, _),
+        inspector(stage.opened_live(gate=gate)) as (url, _),
         visit(browser, url) as seen,
     ):
         seen.until("s.asking")
@@ -158,4 +161,5 @@ def test_the_page_says_what_it_waits_for_and_stays_alive(browser: Browser):
         seen.page.evaluate("c2nav.send('layer', {name: 'goal', on: true})")
         seen.until("s.asking && s.view.layers.includes('goal')")
         seen.until_node("/goal/disc")
+        gate.set()
         seen.until(proposal(0))

@@ -18,7 +18,7 @@ import pytest
 import uvicorn
 from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
-from app.gateway.serving import application
+from app.gateway.serving import Server, application
 from app.inspector.shell import Shell
 from app.session.opened import Opened
 from app.session.worker import Session
@@ -55,7 +55,7 @@ def inspector(opened: Opened) -> Generator[tuple[str, Session]]:
         log_level="warning",
         timeout_graceful_shutdown=1,
     )
-    server = uvicorn.Server(config)
+    server = Server(config)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
     thread.start()
     while not server.started:

@@ -300,6 +300,7 @@ class PlayRun:
     header: Header
     script: Script
     delay_s: float = 0.0
+    gate: threading.Event | None = None
 
     def __post_init__(self) -> None:
         self.exchanges: list[Exchange] = []
@@ -309,13 +310,14 @@ class PlayRun:
         self._steps = 0
         self._decisions = 0
         self._proposal: Ranked | None = None
-        self._lock = threading.Lock()
         self.closed = False
 
     def propose(self) -> Ranked:
         assert isinstance(self.pending, Ask)
         if self._proposal is None:
             time.sleep(self.delay_s)
+            if self.gate is not None:
+                assert self.gate.wait(60.0)
             self._proposal = scripted_answer(self.pending.question)
         return self._proposal
 
@@ -405,9 +407,14 @@ def _looked(pose: Pose, step: int) -> Seen:
     return Seen(views, pose, thumbnail=painted(step * 7 + 1, 112, 112))
 
 
-def live_run(cycles: int = 14, delay_s: float = 0.0, **changes: Any) -> PlayRun:
+def live_run(
+    cycles: int = 14,
+    delay_s: float = 0.0,
+    gate: threading.Event | None = None,
+    **changes: Any,
+) -> PlayRun:
     """A run at its first request."""
-    return PlayRun(header(**changes), script(cycles), delay_s)
+    return PlayRun(header(**changes), script(cycles), delay_s, gate)
 
 
 def finished_run(cycles: int = 14) -> PlayRun:
@@ -439,14 +446,19 @@ def fork_of(
 
 
 def opened_live(
-    *, delay_s: float = 0.0, cycles: int = 14, scene: Any = None, **extra: Any
+    *,
+    delay_s: float = 0.0,
+    gate: threading.Event | None = None,
+    cycles: int = 14,
+    scene: Any = None,
+    **extra: Any,
 ) -> Opened:
     """A live source with one entry."""
     return Opened(
         "furnished house",
         (Entry("1", "episode 1 · 11.7 m"), Entry("2", "episode 2 · 4.0 m")),
         Choice("1", "full", "scripted"),
-        lambda _: Opening(header(), run=live_run(cycles, delay_s), scene=scene),
+        lambda _: Opening(header(), run=live_run(cycles, delay_s, gate), scene=scene),
         fork=fork_of,
         variants=("full", "base"),
         rankers=("scripted", "human"),

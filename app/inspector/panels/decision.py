@@ -12,7 +12,7 @@ from app.inspector.panels.protocol import Dispatch, Html, Update
 from app.session import commands as c
 from app.session.branches import cost_of
 from app.session.decisions import LANES, Decision
-from app.session.snapshot import Snapshot
+from app.session.snapshot import Assessment, Snapshot
 from app.session.wording import (
     SIGNS,
     degrees,
@@ -86,14 +86,8 @@ def _asked(decision: Decision) -> Markup:
 def _committed(snapshot: Snapshot, decision: Decision) -> Markup:
     if decision.pending:
         return m.NOTHING
-    suspects = {s.decision: s for s in snapshot.suspects}
-    suspect = suspects.get(decision.number)
-    regret = ""
-    if suspect is not None:
-        regret = suspect.words
-        if suspect.regret_m is not None:
-            regret = f"{suspect.regret_m:.1f} m against the best offered view {suspect.words}"
     override = decision.override
+    assessment = snapshot.assessments.get(decision.number)
     return m.join(
         [
             m.heading("Committed"),
@@ -101,13 +95,29 @@ def _committed(snapshot: Snapshot, decision: Decision) -> Markup:
                 [
                     ("outcome", outcome_words(decision.outcome, decision.letters)),
                     ("motion", _motion(snapshot, decision)),
-                    ("regret", regret),
+                    ("regret", _regret(assessment)),
+                    ("off the path", _off_path(assessment)),
                     ("cost", _cost(decision)),
                     ("override", f"◆ {override.who} {override.why}".strip() if override else ""),
                 ]
             ),
         ]
     )
+
+
+def _regret(assessment: Assessment | None) -> str:
+    if assessment is None:
+        return ""
+    if assessment.regret_m is None:
+        return assessment.words
+    words = f"{assessment.regret_m:.1f} m against the best offered view"
+    return f"{words} · {assessment.words}" if assessment.words else words
+
+
+def _off_path(assessment: Assessment | None) -> str:
+    if assessment is None or assessment.off_path_m is None:
+        return ""
+    return f"{assessment.off_path_m:.1f} m from the reference"
 
 
 def _motion(snapshot: Snapshot, decision: Decision) -> str:

@@ -11,7 +11,7 @@ from app.inspector.panels.protocol import Dispatch, Html, Update
 from app.session import commands as c
 from app.session.branches import cost_of
 from app.session.decisions import LANES
-from app.session.snapshot import Snapshot, Suspect
+from app.session.snapshot import Assessment, Snapshot
 from app.session.wording import SIGNS, plural, seconds
 
 
@@ -109,7 +109,7 @@ def _suspects(snapshot: Snapshot) -> Markup:
     )
 
 
-def _regret(suspect: Suspect) -> str:
+def _regret(suspect: Assessment) -> str:
     if suspect.regret_m is None:
         return suspect.words
     return f"+{suspect.regret_m:.1f} m {suspect.words}".strip()

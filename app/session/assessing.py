@@ -1,0 +1,133 @@
+"""Suspects: every decision held against the truth, once the floor is known.
+
+Evaluation side: the agent never reads it. Regret of a decision never changes once it is taken, so
+each is measured once, in the background.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from app.session.decisions import Decision
+from app.session.opened import Opening
+from app.session.snapshot import Assessment
+from app.session.story import Story
+from c2nav_engine.contract.question import Slot
+from c2nav_engine.errors import C2NavError
+from c2nav_engine.experiments.regret import controller_fault, regret_m
+from c2nav_engine.experiments.truth import Course, course_of, goal_after_m, true_leg
+from c2nav_engine.geometry import Point, Pose
+from c2nav_engine.navigator.config import LoopConfig
+from c2nav_engine.runner.record import Header
+from c2nav_engine.world.surface import Surface
+
+EARLY, LATE = "early", "late"
+
+_MOVING = (Slot.SEEING, Slot.GLANCE, Slot.DIRECT)
+
+
+class Assessor:
+    """Measures decisions of one episode; used from one background thread at a time."""
+
+    def __init__(self, header: Header, surface: Callable[[], Surface]) -> None:
+        """Remember how the floor is loaded; nothing is loaded yet."""
+        self._header = header
+        self._load = surface
+        self._course: Course | None = None
+        self._hopeless = False
+
+    def assess(self, story: Story, known: Iterable[int]) -> dict[int, Assessment]:
+        """Assessments of the decisions that are made and not known yet."""
+        done = set(known)
+        course = self._ready()
+        if course is None:
+            return {}
+        return {
+            decision.number: _assessed(course, story, decision)
+            for decision in story.decisions
+            if not decision.pending and decision.number not in done
+        }
+
+    def _ready(self) -> Course | None:
+        if self._course is None and not self._hopeless:
+            try:
+                self._course = _course(self._header, self._load())
+            except C2NavError:
+                # Without a reachable goal nothing is better than anything else.
+                self._hopeless = True
+        return self._course
+
+
+def assessor_of(opening: Opening) -> Assessor | None:
+    """An assessor, where there is a goal and a floor."""
+    surface = opening.surface
+    if surface is None:
+        found = getattr(opening.run, "surface", None)
+        surface = None if found is None else lambda: found
+    if surface is None or opening.header.episode.goal_m is None:
+        return None
+    return Assessor(opening.header, surface)
+
+
+def _course(header: Header, surface: Surface) -> Course:
+    episode = header.episode
+    goal_m = episode.goal_m
+    return course_of(
+        episode,
+        start=episode.start,
+        surface=surface,
+        field=None if goal_m is None else surface.distance_field(goal_m),
+        profile=header.profile,
+        controller=LoopConfig.from_json(header.config).controller,
+    )
+
+
+def _assessed(course: Course, story: Story, decision: Decision) -> Assessment:
+    pose = story.track.footsteps[decision.step].pose
+    off_m = off_path_m(pose.position_m, story.header.episode.reference_path_m)
+    regret, words = None, ""
+    if decision.slot in _MOVING:
+        regret, words = _moved(course, pose, decision)
+    elif decision.slot is Slot.TRANSITION:
+        words = _turned(course, pose, decision)
+    return Assessment(decision.number, regret, words, off_m)
+
+
+def _moved(course: Course, pose: Pose, decision: Decision) -> tuple[float | None, str]:
+    after_m = goal_after_m(course, pose, decision.facts.candidates)
+    offered = {c.key: after_m[c.key] for c in decision.facts.candidates if c.feasible}
+    vetoed = {key: value for key, value in after_m.items() if key not in offered}
+    here_m = course.field.distance_m(pose.position_m)
+    words = controller_fault(offered, vetoed, here_m=here_m)
+    if decision.elected not in offered:
+        return None, words
+    regret = regret_m(offered, decision.elected)
+    return (regret if math.isfinite(regret) else None), words
+
+
+def _turned(course: Course, pose: Pose, decision: Decision) -> str:
+    """Whether the leg was left too early or too late; "" where leg ends are not known."""
+    question = decision.question
+    if question is None or len(course.leg_end_goal_m) != len(question.legs):
+        return ""
+    past = true_leg(course, course.field.distance_m(pose.position_m), legs=len(question.legs))
+    if decision.elected == "next" and past <= question.leg:
+        return EARLY
+    return LATE if decision.elected == "stay" and past > question.leg else ""
+
+
+def off_path_m(point_m: Point, path_m: tuple[Point, ...]) -> float | None:
+    """Horizontal distance from a polyline; None without one."""
+    if not path_m:
+        return None
+    corners = np.array(path_m)[:, (0, 2)]
+    here = np.array([point_m[0], point_m[2]])
+    if len(corners) == 1:
+        return float(np.linalg.norm(corners[0] - here))
+    starts, along = corners[:-1], np.diff(corners, axis=0)
+    squared = np.maximum((along * along).sum(axis=1), 1e-12)
+    part = (((here - starts) * along).sum(axis=1) / squared).clip(0.0, 1.0)
+    return float(np.linalg.norm(starts + along * part[:, None] - here, axis=1).min())
