@@ -15,7 +15,6 @@ from c2nav_engine.runner.source import Source
 from c2nav_engine.sensing.renderer import Renderer
 from c2nav_engine.world.scene import Scene
 from c2nav_engine.world.surface import DistanceField, Surface
-from c2nav_engine.world.walkable import WalkableSurface, build_surface
 
 SURFACE_VERSION = 2
 """Counts changes of the surface builder: older cached surfaces are built again."""
@@ -117,6 +116,9 @@ class Worlds:
 
 def built_surface(scene: Scene, profile: Profile, cache: Path) -> Surface:
     """Build the floor of a scene for a body, or take it from the cache keyed by both contents."""
+    # The builder's compiled kernels take a second to import; playback never needs them.
+    from c2nav_engine.world.walkable import WalkableSurface, build_surface
+
     body = (profile.height_m, profile.radius_m, profile.climb_m, profile.slope_rad)
     key = hashlib.sha256(f"{scene.sha256}/{body}/{SURFACE_VERSION}".encode()).hexdigest()[:32]
     path = cache / "surfaces" / f"{key}.npz"
