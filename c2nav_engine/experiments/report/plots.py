@@ -33,6 +33,7 @@ _STYLE = {
     "xtick.color": _INK,
     "ytick.color": _INK,
 }
+_SVG_FACTS = ("Date", "Creator", "Format", "Type")
 _REPORTED_BY_VARIANT = {**FACULTIES, **COMPONENTS, **INVERSIONS}
 
 
@@ -142,5 +143,5 @@ def _saved(drawn: tuple[Any, Any], title: str, stem: Path) -> Plot:
     # Dates and random ids are left out: the same rows give the same bytes.
     with library.rc_context(_STYLE):
         drawing.savefig(plot.pdf, metadata={"CreationDate": None, "Producer": None})
-        drawing.savefig(plot.svg, metadata={"Date": None, "Creator": None})
+        drawing.savefig(plot.svg, metadata=dict.fromkeys(_SVG_FACTS))
     return plot

@@ -39,7 +39,7 @@ class Reported:
     def value(self, figure: str) -> float | None:
         """The figure in the unit of our rows: rates as fractions of one, metres."""
         shares = {"osr": self.osr, "sr": self.sr, "spl": self.spl}
-        return shares[figure] / 100.0 if figure in shares else self.ne_m
+        return round(shares[figure] / 100.0, 6) if figure in shares else self.ne_m
 
 
 def _row(*labels: str, ne: float | None = None, rates: tuple[float, float, float]) -> Reported:
