@@ -79,10 +79,8 @@ def write_episodes(
     """
     vocabulary: dict[str, object] = {"word_list": []}
     top: dict[str, object] = {**(extra or {}), "instruction_vocab": vocabulary}
-    lines = ",\n".join(
-        json.dumps(episode_as_json(episode), ensure_ascii=False) for episode in episodes
-    )
-    rest = json.dumps(top, ensure_ascii=False)[1:]
+    lines = ",\n".join(json.dumps(episode_as_json(episode)) for episode in episodes)
+    rest = json.dumps(top)[1:]
     data = f'{{"episodes": [\n{lines}\n],\n{rest}\n'.encode()
     path.parent.mkdir(parents=True, exist_ok=True)
     # Without a time stamp the same episodes give the same bytes.
