@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import importlib
+import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from c2nav_engine.errors import MissingExtra
+from c2nav_engine.geometry import Point
 from c2nav_engine.traces.attachments import task_of
 from c2nav_engine.traces.exports.rerun_log import RerunLog
+from c2nav_engine.traces.moments import moments
 from c2nav_engine.traces.reader import TraceFile
 from c2nav_engine.world.scene import Scene
 
@@ -35,7 +39,8 @@ def export_rrd(
     rr, rrb = _rerun()
     recording = rr.RecordingStream(APPLICATION, recording_id=trace.sha256, send_properties=False)
     runs = [("", trace)] if other is None else [("/run_a", trace), ("/run_b", other)]
-    recording.save(str(out), default_blueprint=_blueprint(rrb, [root for root, _ in runs]))
+    layout = _blueprint(rrb, [root for root, _ in runs], eye=_eye(trace))
+    recording.save(str(out), default_blueprint=layout)
     for (root, each), colour in zip(runs, (FIRST_RGB, SECOND_RGB), strict=False):
         log = RerunLog(rr, recording, root=root, colour=colour)
         log.log(each, task_of(each))
@@ -52,12 +57,34 @@ def _rerun() -> tuple[Any, Any]:
         raise MissingExtra(message) from error
 
 
-def _blueprint(rrb: Any, roots: list[str]) -> Any:
+@dataclass(frozen=True, slots=True)
+class _Eye:
+    """Where the world is seen from at first, in metres."""
+
+    position_m: Point
+    target_m: Point
+
+
+def _eye(trace: TraceFile) -> _Eye:
+    """From above and behind the middle of the way, far enough to see all of it."""
+    points_m = [pose.position_m for moment in moments(trace) for _, pose in moment.poses()]
+    points_m = points_m or [(0.0, 0.0, 0.0)]
+    low = [min(point[axis] for point in points_m) for axis in range(3)]
+    high = [max(point[axis] for point in points_m) for axis in range(3)]
+    x, y, z = ((a + b) / 2.0 for a, b in zip(low, high, strict=True))
+    reach_m = 4.0 + math.dist(low, high)
+    return _Eye((x, y + 1.1 * reach_m, z + 0.7 * reach_m), (x, y, z))
+
+
+def _blueprint(rrb: Any, roots: list[str], *, eye: _Eye) -> Any:
     """Pictures above, the world with the whole trail beside what was decided."""
     world = rrb.Spatial3DView(
         origin="/",
         contents=[f"+ {root}/world/**" for root in roots],
         name="World",
+        eye_controls=rrb.EyeControls3D(
+            position=eye.position_m, look_target=eye.target_m, eye_up=(0.0, 1.0, 0.0)
+        ),
     )
     pictures = [_pictures(rrb, root) for root in roots]
     words = rrb.Tabs(
@@ -90,7 +117,7 @@ def _blueprint(rrb: Any, roots: list[str]) -> Any:
             rrb.Vertical(*pictures),
             rrb.Horizontal(world, words, column_shares=[3, 2]),
             curves,
-            row_shares=[2 * len(roots), 4, 2],
+            row_shares=[3 * len(roots), 5, 2],
         ),
         rrb.TimePanel(timeline="step", state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),

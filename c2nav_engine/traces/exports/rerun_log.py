@@ -27,6 +27,12 @@ OFFERED_RGB = (150, 152, 158)
 VETOED_RGB = (196, 88, 80)
 GOAL_RGB = (236, 190, 84)
 
+ABOVE_FLOOR_M = 0.06
+"""Lines are lifted off the floor so that it does not hide them."""
+
+HEADROOM_M = 1.9
+"""What begins higher than this above the way, ceilings and upper floors, is not drawn."""
+
 Rerun = Any
 """The `rerun` module or a recording of it: its types are partial."""
 
@@ -49,6 +55,7 @@ class RerunLog:
         self._root = root
         self._colour = colour
         self._trail: list[Point] = []
+        self._top_m = -math.inf
 
     def log(self, trace: TraceFile, task: Task) -> None:
         """Everything in the trace."""
@@ -60,13 +67,18 @@ class RerunLog:
         self._recording.reset_time()
 
     def scene(self, scene: Scene) -> None:
-        """The mesh, one entity per material."""
+        """The mesh as a doll's house, one entity per material; after `log`, which knows the way."""
         rr = self._rr
+        lowest_m = scene.vertices_m[scene.triangles, 1].min(axis=1)
+        kept = lowest_m < self._top_m + HEADROOM_M
         for index, material in enumerate(scene.materials):
             runs = [part for part in scene.parts if part.material == index]
-            if not runs:
+            chosen = np.concatenate(
+                [np.arange(0), *(np.arange(part.first, part.stop) for part in runs)]
+            )
+            chosen = chosen[kept[chosen]]
+            if not len(chosen):
                 continue
-            chosen = np.concatenate([np.arange(part.first, part.stop) for part in runs])
             corners = scene.triangles[chosen].reshape(-1)
             texcoords = texture = None
             if scene.uvs is not None and material.texture is not None:
@@ -92,13 +104,14 @@ class RerunLog:
         text = f"**{episode.instruction}**\n\n{legs}"
         self._static("instruction", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
         if episode.reference_path_m:
-            strip = rr.LineStrips3D([episode.reference_path_m], colors=OFFERED_RGB, radii=0.01)
+            path = [(x, y + ABOVE_FLOOR_M, z) for x, y, z in episode.reference_path_m]
+            strip = rr.LineStrips3D([path], colors=OFFERED_RGB, radii=0.02)
             self._static("world/reference", strip)
         if episode.goal_m is not None:
             radius_m = episode.goal_radius_m
             x, y, z = episode.goal_m
             ring = [
-                (x + radius_m * math.cos(a), y, z + radius_m * math.sin(a))
+                (x + radius_m * math.cos(a), y + ABOVE_FLOOR_M, z + radius_m * math.sin(a))
                 for a in np.linspace(0.0, math.tau, 49)
             ]
             self._static("world/goal", rr.Points3D([(x, y, z)], colors=GOAL_RGB, radii=0.1))
@@ -125,15 +138,17 @@ class RerunLog:
         rr = self._rr
         for step, pose in moment.poses():
             self._recording.set_time("step", sequence=step)
-            self._trail.append(pose.position_m)
+            x, y, z = pose.position_m
+            self._trail.append((x, y + ABOVE_FLOOR_M, z))
+            self._top_m = max(self._top_m, y)
             arrow = rr.Arrows3D(
-                origins=[pose.position_m],
+                origins=[(x, y + ABOVE_FLOOR_M, z)],
                 vectors=[tuple(0.4 * part for part in pose.forward)],
                 colors=self._colour,
             )
             self._put("world/body", arrow)
         if moment.poses():
-            trail = rr.LineStrips3D([self._trail], colors=self._colour, radii=0.025)
+            trail = rr.LineStrips3D([self._trail], colors=self._colour, radii=0.04)
             self._put("world/trail", trail)
         for step, distance_m in moment.goal_distances_m():
             self._recording.set_time("step", sequence=step)
@@ -227,7 +242,7 @@ class RerunLog:
         self._put(
             "world/candidates",
             self._rr.Arrows3D(
-                origins=[(x, y + 0.05, z)] * len(arrows),
+                origins=[(x, y + ABOVE_FLOOR_M, z)] * len(arrows),
                 vectors=vectors or np.zeros((0, 3)),
                 colors=colours or None,
                 labels=[each.key for each in arrows] or None,
@@ -287,7 +302,8 @@ def decision_markdown(decision: Decision) -> str:
     ]
     for query in decision.ranked.queries:
         meant = outcome_words(outcome_of(query.outcome))
-        lines.append(f"- order {query.order}, attempt {query.repair + 1}: `{query.text}` → {meant}")
+        said = f"`{query.text}`" if query.text else "no text"
+        lines.append(f"- order {query.order}, attempt {query.repair + 1}: {said} → {meant}")
     prompt = prompt_words(decision)
     if prompt:
         lines += ["", "```text", prompt, "```"]
