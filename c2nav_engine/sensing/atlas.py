@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float32, Int32, Int64, UInt8, UInt32
 
-from c2nav_engine.sensing.mipmap import LEVELS, densities, mipmaps
-from c2nav_engine.world.scene import Material, Scene
+from c2nav_engine.sensing.mipmap import LEVELS, fill_densities, mipmaps
+from c2nav_engine.world.scene import Scene
 
 
 class Atlas(NamedTuple):
@@ -24,9 +24,9 @@ class Atlas(NamedTuple):
         colours: Linear colour factor of each material, with alpha.
         unlit: 1 where a material is not shaded.
         cutout_alphas: Alpha below which a material's surface is not there.
-        material_of_triangle: Index into these tables.
-        uvs: Texture coordinates of the corners; no rows where the scene has none.
-        texel_density: Squared texels a metre of each triangle; no rows without textures.
+        surfaces: One row a triangle, so that a hit reads one place in memory: its material,
+            its texels a square metre, and u, v of its corners; the material alone where the
+            scene has no textures.
         triangles: Vertex indices; needed for vertex colours only.
         vertex_colours: Packed; empty where the scene has none.
     """
@@ -37,21 +37,16 @@ class Atlas(NamedTuple):
     colours: Float32[np.ndarray, "materials 4"]
     unlit: UInt8[np.ndarray, " materials"]
     cutout_alphas: Float32[np.ndarray, " materials"]
-    material_of_triangle: Int32[np.ndarray, " triangles"]
-    uvs: Float32[np.ndarray, "cornered 3 2"]
-    texel_density: Float32[np.ndarray, " cornered"]
+    surfaces: Float32[np.ndarray, "triangles columns"]
     triangles: Int32[np.ndarray, "triangles 3"]
     vertex_colours: UInt32[np.ndarray, " coloured"]
 
 
 def atlas_of(scene: Scene) -> Atlas:
     """Pack a scene; textures that materials share are stored once."""
-    texels, offsets, sizes_px = _packed(scene.materials)
-    material_of_triangle = np.repeat(
-        np.asarray([part.material for part in scene.parts], np.int32),
-        [part.stop - part.first for part in scene.parts],
-    )
-    uvs = np.zeros((0, 3, 2), np.float32) if scene.uvs is None else scene.uvs
+    # Without texture coordinates, a texture cannot be placed: plain colours remain.
+    textures = [m.texture if scene.uvs is not None else None for m in scene.materials]
+    texels, offsets, sizes_px = _packed(textures)
     return Atlas(
         texels=texels,
         offsets=offsets,
@@ -59,16 +54,22 @@ def atlas_of(scene: Scene) -> Atlas:
         colours=np.asarray([m.colour for m in scene.materials], np.float32),
         unlit=np.asarray([m.unlit for m in scene.materials], np.uint8),
         cutout_alphas=np.asarray([m.cutout_alpha for m in scene.materials], np.float32),
-        material_of_triangle=material_of_triangle,
-        uvs=uvs,
-        texel_density=densities(
-            scene.vertices_m, scene.triangles, uvs, sizes_px[material_of_triangle, 0]
-        )
-        if len(uvs)
-        else np.zeros(0, np.float32),
+        surfaces=_surfaces(scene, sizes_px),
         triangles=scene.triangles,
         vertex_colours=np.zeros(0, np.uint32) if scene.colours is None else packed(scene.colours),
     )
+
+
+def _surfaces(
+    scene: Scene, sizes_px: Int32[np.ndarray, "materials levels 2"]
+) -> Float32[np.ndarray, "triangles columns"]:
+    surfaces = np.zeros((len(scene.triangles), 1 if scene.uvs is None else 8), np.float32)
+    for part in scene.parts:
+        surfaces[part.first : part.stop, 0] = part.material
+    if scene.uvs is not None:
+        surfaces[:, 2:] = scene.uvs.reshape(-1, 6)
+        fill_densities(surfaces, scene.vertices_m, scene.triangles, sizes_px[:, 0])
+    return surfaces
 
 
 def packed(rgba: UInt8[np.ndarray, "*shape 4"]) -> UInt32[np.ndarray, "*shape"]:
@@ -77,7 +78,7 @@ def packed(rgba: UInt8[np.ndarray, "*shape 4"]) -> UInt32[np.ndarray, "*shape"]:
 
 
 def _packed(
-    materials: tuple[Material, ...],
+    textures: list[UInt8[np.ndarray, "_ _ 4"] | None],
 ) -> tuple[
     UInt32[np.ndarray, " texels"],
     Int64[np.ndarray, "materials levels"],
@@ -85,17 +86,17 @@ def _packed(
 ]:
     chunks: list[UInt32[np.ndarray, " texels"]] = []
     row_of: dict[int, int] = {}
-    offsets = np.zeros((len(materials), LEVELS), np.int64)
-    sizes_px = np.zeros((len(materials), LEVELS, 2), np.int32)
+    offsets = np.zeros((len(textures), LEVELS), np.int64)
+    sizes_px = np.zeros((len(textures), LEVELS, 2), np.int32)
     start = 0
-    for index, material in enumerate(materials):
-        if material.texture is None:
+    for index, texture in enumerate(textures):
+        if texture is None:
             continue
-        known = row_of.setdefault(id(material.texture), index)
+        known = row_of.setdefault(id(texture), index)
         if known != index:
             offsets[index], sizes_px[index] = offsets[known], sizes_px[known]
             continue
-        for level, picture in enumerate(mipmaps(packed(material.texture))):
+        for level, picture in enumerate(mipmaps(packed(texture))):
             offsets[index, level], sizes_px[index, level] = start, picture.shape
             chunks.append(picture.reshape(-1))
             start += picture.size

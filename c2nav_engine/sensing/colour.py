@@ -22,7 +22,8 @@ ENCODED = np.rint(
 @compiled
 def encode_level(linear: float) -> int:
     """The 8-bit sRGB level of a linear value, clipped."""
-    return ENCODED[int(min(max(linear, 0.0), 1.0) * 4096.0 + 0.5)]
+    clipped = min(max(linear, np.float32(0.0)), np.float32(1.0))
+    return ENCODED[int(clipped * np.float32(4096.0) + np.float32(0.5))]
 
 
 @compiled

@@ -6,21 +6,28 @@ It needs no GPU, display or driver, and the same pose gives the same bytes every
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
-from jaxtyping import Bool, Float, Float32, Int64, UInt8
+from jaxtyping import Bool, Float, Float32, Int64
 
 from c2nav_engine.geometry import Pinhole
 from c2nav_engine.sensing.atlas import atlas_of
 from c2nav_engine.sensing.caster import Caster, Hits
+from c2nav_engine.sensing.rayplan import RayPlan, ray_plan
 from c2nav_engine.sensing.renderer import Image
 from c2nav_engine.world.scene import Scene
 
+if TYPE_CHECKING:
+    from c2nav_engine.sensing.shading import Look
+
+T = TypeVar("T")
+
 CHUNK_RAYS = 16_384
-"""Rays that one thread shades at a time."""
+"""Rays whose pixels one thread fills at a time."""
 
 
 SEE_THROUGH_LAYERS = 8
@@ -54,22 +61,22 @@ class EmbreeRenderer:
         scene: What to render; its arrays are kept.
         light: How surfaces are lit.
         threads: Threads to cast and shade with; 0 uses every core.
+
+    Attributes:
+        caster: The bare caster, which sees cut-outs as solid.
     """
 
     def __init__(self, scene: Scene, *, light: Light | None = None, threads: int = 0) -> None:
         # The kernels import numba, which takes a second: only what renders pays for it.
         from c2nav_engine.sensing import shading
 
-        light = light or Light()
         self._kernels = shading
-        self._lighting = shading.Lighting(
-            light.ambient, light.headlight, light.sky, *light.background
-        )
+        self._light = light or Light()
         self._atlas = atlas_of(scene)
         self._has_cutouts = bool(self._atlas.cutout_alphas.any())
-        self._caster = Caster(scene, threads=threads)
+        self.caster = Caster(scene, threads=threads)
         self._pool = ThreadPoolExecutor(threads or os.cpu_count() or 1, "render")
-        self._directions: dict[Pinhole, Float32[np.ndarray, "rays 3"]] = {}
+        self._plans: dict[tuple[Pinhole, Pinhole], RayPlan] = {}
 
     @property
     def name(self) -> str:
@@ -86,41 +93,53 @@ class EmbreeRenderer:
         far_m: float,
     ) -> list[Image]:
         """RGB and depth for several cameras in one cast; equal pinholes share their rays."""
-        count = len(world_from_cameras)
-        if not count:
+        views = len(world_from_cameras)
+        if not views:
             return []
-        pinholes = [rgb] if rgb == depth else [rgb, depth]
-        hits = self._cast(self.rays(world_from_cameras, pinholes))
-        pictures = self._shaded(hits, rgb, count)
-        t_hit = hits.t_hit[-count * depth.width_px * depth.height_px :]
-        depths_m = np.where((t_hit >= near_m) & (t_hit <= far_m), t_hit, np.float32(0.0))
+        hits = self._cast(self.rays(world_from_cameras, rgb=rgb, depth=depth))
+        pictures = np.empty((views, rgb.height_px, rgb.width_px, 3), np.uint8)
+        depths_m = np.empty((views, depth.height_px, depth.width_px), np.float32)
+        look = self._look(rgb)
+        plan = self._plan(rgb, depth)
+
+        def paint(chunk: tuple[int, int]) -> None:
+            view, start = chunk
+            stop = min(start + CHUNK_RAYS, len(plan.directions))
+            shift = view * len(plan.directions)
+            canvas = self._kernels.Canvas(
+                pictures[view].reshape(-1, 3),
+                depths_m[view].reshape(-1),
+                plan.rgb_pixels[start:stop],
+                plan.depth_pixels[start:stop],
+            )
+            part = Hits(*(array[shift + start : shift + stop] for array in hits))
+            self._kernels.keep_depths(canvas, part.t_hit, (float(near_m), float(far_m)))
+            self._kernels.paint(canvas, part, self._atlas, look)
+
+        starts = range(0, len(plan.directions), CHUNK_RAYS)
+        self._each(paint, [(view, start) for view in range(views) for start in starts])
         return [
             Image(rgb=picture, depth_m=depth_m, world_from_camera=np.asarray(matrix, np.float64))
-            for picture, depth_m, matrix in zip(
-                pictures,
-                depths_m.reshape(count, depth.height_px, depth.width_px),
-                world_from_cameras,
-                strict=True,
-            )
+            for picture, depth_m, matrix in zip(pictures, depths_m, world_from_cameras, strict=True)
         ]
 
     def rays(
-        self, world_from_cameras: Sequence[Float[np.ndarray, "4 4"]], pinholes: Sequence[Pinhole]
+        self,
+        world_from_cameras: Sequence[Float[np.ndarray, "4 4"]],
+        *,
+        rgb: Pinhole,
+        depth: Pinhole,
     ) -> Float32[np.ndarray, "rays 6"]:
-        """Rays through all pixel centres: by pinhole, then by camera, then row by row."""
-        cameras = [(matrix, pinhole) for pinhole in pinholes for matrix in world_from_cameras]
-        counts = [pinhole.width_px * pinhole.height_px for _, pinhole in cameras]
-        stops = np.cumsum(counts).tolist()
-        rays = np.empty((stops[-1], 6), np.float32)
+        """The rays of `render`, in the order in which it casts them."""
+        directions = self._plan(rgb, depth).directions
+        count = len(directions)
+        rays = np.empty((count * len(world_from_cameras), 6), np.float32)
 
-        def fill(index: int) -> None:
-            matrix, pinhole = cameras[index]
-            block = rays[stops[index] - counts[index] : stops[index]]
-            self._kernels.fill_rays(
-                block, self._camera_rays(pinhole), np.asarray(matrix, np.float32)
-            )
+        def fill(view: int) -> None:
+            matrix = np.asarray(world_from_cameras[view], np.float32)
+            self._kernels.fill_rays(rays[view * count : (view + 1) * count], directions, matrix)
 
-        self._each(fill, range(len(cameras)))
+        self._each(fill, range(len(world_from_cameras)))
         return rays
 
     def cast(
@@ -145,15 +164,24 @@ class EmbreeRenderer:
         units = directions / np.maximum(lengths_m, 1e-12)[:, None]
         return self.cast(a_m, units).t_hit >= lengths_m - margin_m
 
-    def _camera_rays(self, pinhole: Pinhole) -> Float32[np.ndarray, "rays 3"]:
-        if pinhole not in self._directions:
-            directions = pinhole.ray_directions().reshape(-1, 3)
-            self._directions[pinhole] = np.ascontiguousarray(directions, np.float32)
-        return self._directions[pinhole]
+    def _plan(self, rgb: Pinhole, depth: Pinhole) -> RayPlan:
+        if (rgb, depth) not in self._plans:
+            self._plans[rgb, depth] = ray_plan(rgb, depth)
+        return self._plans[rgb, depth]
+
+    def _look(self, rgb: Pinhole) -> Look:
+        light = self._light
+        return self._kernels.Look(
+            light.ambient,
+            light.headlight,
+            light.sky,
+            *light.background,
+            pixel_m2=rgb.focal_px**-2,
+        )
 
     def _cast(self, rays: Float32[np.ndarray, "rays 6"]) -> Hits:
         """First hits; rays go on behind surfaces that alpha says are not there."""
-        hits = self._caster.cast(rays)
+        hits = self.caster.cast(rays)
         if not self._has_cutouts:
             return hits
         through = np.empty(len(rays), np.bool_)
@@ -169,29 +197,13 @@ class EmbreeRenderer:
         # Just behind the surface, in lengths of the ray: far enough for 32-bit coordinates.
         passed = hits.t_hit[indices] * np.float32(1.0 + 1e-5) + np.float32(1e-4)
         rays[:, :3] += rays[:, 3:] * passed[:, None]
-        beyond = self._caster.cast(rays)
+        beyond = self.caster.cast(rays)
         hits.t_hit[indices] = beyond.t_hit + passed
         hits.triangles[indices] = beyond.triangles
         hits.barycentrics[indices] = beyond.barycentrics
         hits.normals[indices] = beyond.normals
 
-    def _shaded(
-        self, hits: Hits, pinhole: Pinhole, views: int
-    ) -> UInt8[np.ndarray, "views rows columns 3"]:
-        """Pictures of the first hits, which are those of `views` cameras of one pinhole."""
-        rgb = np.empty((views, pinhole.height_px, pinhole.width_px, 3), np.uint8)
-        pixels = rgb.reshape(-1, 3)
-        look = (self._lighting, pinhole.focal_px**-2)
-
-        def shade_chunk(start: int) -> None:
-            chunk = slice(start, min(start + CHUNK_RAYS, len(pixels)))
-            part = Hits(*(array[chunk] for array in hits))
-            self._kernels.shade(pixels[chunk], part, self._atlas, look)
-
-        self._each(shade_chunk, range(0, len(pixels), CHUNK_RAYS))
-        return rgb
-
-    def _each(self, work: Callable[[int], None], items: Sequence[int]) -> None:
+    def _each(self, work: Callable[[T], None], items: Iterable[T]) -> None:
         """Run independent pieces of work on the renderer's threads; errors come through."""
         for _ in self._pool.map(work, items):
             pass

@@ -60,31 +60,18 @@ def halve(
             )
 
 
-def densities(
-    vertices_m: Float32[np.ndarray, "vertices 3"],
-    triangles: Int32[np.ndarray, "triangles 3"],
-    uvs: Float32[np.ndarray, "triangles 3 2"],
-    sizes_px: Int32[np.ndarray, "triangles 2"],
-) -> Float32[np.ndarray, " triangles"]:
-    """Texels in a square metre of each triangle; 0 where it has no area or no texture."""
-    density = np.zeros(len(triangles), np.float32)
-    fill_densities(density, vertices_m, triangles, uvs, sizes_px)
-    return density
-
-
 @compiled
-def fill_densities(  # noqa: PLR0917 - compiled functions take no keywords cheaply
-    density: Float32[np.ndarray, " triangles"],
+def fill_densities(
+    surfaces: Float32[np.ndarray, "triangles 8"],
     vertices_m: Float32[np.ndarray, "vertices 3"],
     triangles: Int32[np.ndarray, "triangles 3"],
-    uvs: Float32[np.ndarray, "triangles 3 2"],
-    sizes_px: Int32[np.ndarray, "triangles 2"],
+    sizes_px: Int32[np.ndarray, "materials 2"],
 ) -> None:
-    """Ratio of each triangle's area in texels to its area in the world."""
+    """Write each triangle's texels a square metre into column 1 (see `sensing.atlas`)."""
     for i in range(len(triangles)):
         a, b, c = triangles[i, 0], triangles[i, 1], triangles[i, 2]
-        ux, uy = uvs[i, 1, 0] - uvs[i, 0, 0], uvs[i, 1, 1] - uvs[i, 0, 1]
-        vx, vy = uvs[i, 2, 0] - uvs[i, 0, 0], uvs[i, 2, 1] - uvs[i, 0, 1]
+        ux, uy = surfaces[i, 4] - surfaces[i, 2], surfaces[i, 5] - surfaces[i, 3]
+        vx, vy = surfaces[i, 6] - surfaces[i, 2], surfaces[i, 7] - surfaces[i, 3]
         px = vertices_m[b, 0] - vertices_m[a, 0]
         py = vertices_m[b, 1] - vertices_m[a, 1]
         pz = vertices_m[b, 2] - vertices_m[a, 2]
@@ -94,5 +81,6 @@ def fill_densities(  # noqa: PLR0917 - compiled functions take no keywords cheap
         nx, ny, nz = py * qz - pz * qy, pz * qx - px * qz, px * qy - py * qx
         area = np.sqrt(nx * nx + ny * ny + nz * nz)
         if area > 0.0:
-            texels = abs(ux * vy - uy * vx) * sizes_px[i, 0] * sizes_px[i, 1]
-            density[i] = texels / area
+            material = int(surfaces[i, 0])
+            texels = abs(ux * vy - uy * vx) * sizes_px[material, 0] * sizes_px[material, 1]
+            surfaces[i, 1] = texels / area
