@@ -189,7 +189,8 @@ class OpenTrace:
         def show(digest: str) -> Picture | None:
             if not digest:
                 return None
-            if digest not in shared:
+            # What was first seen as a digest only may be stored later, when a question shows it.
+            if digest not in shared or not shared[digest].jpeg:
                 place = places[digest]
                 jpeg = self._bytes(place) if pictures else b""
                 shared[digest] = Picture(jpeg, digest, place.width_px, place.height_px)
