@@ -44,6 +44,7 @@ from c2nav_engine.traces.records import (
     summary_crc_holds,
     walk,
 )
+from c2nav_engine.traces.salvage import unfinished_words
 from c2nav_engine.traces.topics import METADATA, SCHEMA_VERSION, rank_of
 
 CACHED_CHUNKS = 8
@@ -87,7 +88,7 @@ class TraceFile:
         tail_bytes = FOOTER_BYTES + len(MAGIC)
         footer = footer_of(self._read(max(0, self._size - tail_bytes), tail_bytes))
         if footer is None:
-            raise UnfinishedTrace(unfinished_message(self.path))
+            raise UnfinishedTrace(unfinished_words(self.path))
         self._summary(footer)
 
     def _summary(self, footer: Footer) -> None:
@@ -301,23 +302,3 @@ class TraceFile:
         """A file that nobody closed is closed with its last reader."""
         if hasattr(self, "_descriptor"):
             self.close()
-
-
-def unfinished_message(path: Path) -> str:
-    """What an unfinished file holds and how to get it out."""
-    data = path.read_bytes()
-    messages = chunks = 0
-    for record in walk(data):
-        if record.opcode == Opcode.CHUNK:
-            try:
-                inner = chunk_records(record)
-            except TraceError:
-                continue
-            chunks += 1
-            messages += sum(isinstance(each, Message) for each in inner)
-    target = path.name.removesuffix(".part").removesuffix(".mcap") + ".recovered.mcap"
-    return (
-        f"unfinished trace: {path} ends without its closing record; {messages} messages in "
-        f"{chunks} whole chunks are there ({len(data)} bytes); get them out with "
-        f"`c2nav trace recover {path} --out {target}`"
-    )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Message, Metadata, Schema
@@ -17,6 +19,7 @@ from c2nav_engine.traces.records import (
     parse,
     walk,
 )
+from c2nav_engine.traces.topics import EPOCH_NS, EXCHANGE_TOPICS, STEP_NS
 
 
 @dataclass(slots=True)
@@ -54,6 +57,23 @@ def salvage(data: bytes) -> Salvaged:
         except TraceError:
             reading.found.damaged += 1
     return reading.found
+
+
+def unfinished_words(path: Path) -> str:
+    """What an unfinished file holds and how to get it out, for a person."""
+    data = path.read_bytes()
+    found = salvage(data)
+    counts = Counter(stored.topic for stored in found.messages)
+    decisions = counts["/decision"]
+    others = sum(counts[topic] for topic in EXCHANGE_TOPICS) - decisions
+    last_ns = max((stored.log_time_ns for stored in found.messages), default=EPOCH_NS)
+    step = (last_ns - EPOCH_NS) // STEP_NS
+    target = path.name.removesuffix(".part").removesuffix(".mcap") + ".recovered.mcap"
+    return (
+        f"unfinished trace: {path} ends without its closing record; {decisions} decisions and "
+        f"{others} other exchanges up to step {step} are there ({found.end} of {len(data)} bytes); "
+        f"get them out with `c2nav trace recover {path} --out {target}`"
+    )
 
 
 @dataclass(slots=True)

@@ -43,15 +43,18 @@ def test_reading_a_damaged_trace_says_so(trace: Path) -> None:
         read_trace(trace)
 
 
-def test_an_unfinished_trace_says_what_is_there_and_what_to_do(trace: Path) -> None:
-    cut = trace.with_name("run.mcap.part")
-    cut.write_bytes(trace.read_bytes()[: trace.stat().st_size // 2])
+def test_an_unfinished_trace_says_what_is_there_and_what_to_do(tmp_path: Path) -> None:
+    episode = fake_episode(3, side_px=16)
+    part = write_part(tmp_path / "run.mcap", episode)
     with pytest.raises(UnfinishedTrace) as caught:
-        open_trace(cut)
+        open_trace(part)
     text = str(caught.value)
+    decisions = sum(each.decision is not None for each in episode.exchanges)
+    steps = episode.footer.metrics["steps"]
     assert "unfinished trace" in text
-    assert f"c2nav trace recover {cut} --out run.recovered.mcap" in text
-    assert "0 messages" not in text
+    assert f"{decisions} decisions and {len(episode.exchanges) - decisions} other" in text
+    assert f"up to step {steps} " in text
+    assert f"c2nav trace recover {part} --out run.recovered.mcap" in text
 
 
 @pytest.mark.parametrize("content", [b"", b"\x89MCAP0\r\n", b"not a trace at all" * 9])

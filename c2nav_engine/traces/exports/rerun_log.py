@@ -13,13 +13,14 @@ import numpy as np
 from c2nav_engine.episodes.profile import Profile
 from c2nav_engine.geometry import Point, Pose, world_from_camera
 from c2nav_engine.traces.attachments import Task
-from c2nav_engine.traces.contract_messages import outcome_of, pose_of
+from c2nav_engine.traces.contract_messages import pose_of
+from c2nav_engine.traces.exports.pages import decision_markdown, ladder_markdown
 from c2nav_engine.traces.moments import Moment, moments, pictures
 from c2nav_engine.traces.pb.control_pb2 import Control
 from c2nav_engine.traces.pb.decision_pb2 import Decision
 from c2nav_engine.traces.pb.route_pb2 import Ladder, Sketch
 from c2nav_engine.traces.reader import TraceFile
-from c2nav_engine.traces.words import committed_words, outcome_words, prompt_words, winner_of
+from c2nav_engine.traces.words import committed_words, winner_of
 from c2nav_engine.world.scene import Scene
 
 ELECTED_RGB = (84, 190, 128)
@@ -253,16 +254,7 @@ class RerunLog:
         evidence = (ladder.ground, ladder.journey, ladder.lookback)
         for name, value in zip(("ground", "journey", "lookback"), evidence, strict=True):
             self._put(f"ladder/{name}", self._rr.Scalars(value))
-        rows = "\n".join(
-            f"| {name} | {value:+d} |"
-            for name, value in zip(("ground", "journey", "look-back"), evidence, strict=True)
-        )
-        notes = "\n".join(f"- {each}" for each in [*ladder.vetoes, ladder.event] if each)
-        self._text(
-            "ladder/verdict",
-            f"**{ladder.verdict}** · look-backs left: {ladder.budget} · markers: "
-            f"{len(ladder.markers)}\n\n| evidence | |\n|---|---|\n{rows}\n\n{notes}",
-        )
+        self._text("ladder/verdict", ladder_markdown(ladder))
 
     # ------------------------------------------------------------ entities
 
@@ -275,39 +267,6 @@ class RerunLog:
 
     def _static(self, entity: str, archetype: Any) -> None:
         self._recording.log(f"{self._root}/{entity}", archetype, static=True)
-
-
-def decision_markdown(decision: Decision) -> str:
-    """A decision as a page: candidates, answers, what was committed, and the prompt."""
-    facts = decision.facts
-    labels = {
-        label.key: label.label for query in decision.ranked.queries[:1] for label in query.labels
-    }
-    winner = winner_of(decision)
-    rows = [
-        f"| {labels.get(each.key, '')} | {'**' if each.key == winner else ''}{each.key}"
-        f"{'**' if each.key == winner else ''} | {each.veto or 'offered'} |"
-        for each in facts.candidates
-    ]
-    lines = [
-        f"## Decision {decision.decision} · {decision.slot}",
-        f"leg {facts.leg + 1} · cycle {facts.cycle} · {facts.contested or 'not contested'}",
-        "",
-        f"**{committed_words(decision)}**",
-        "",
-        "| label | candidate | |",
-        "|---|---|---|",
-        *rows,
-        "",
-    ]
-    for query in decision.ranked.queries:
-        meant = outcome_words(outcome_of(query.outcome))
-        said = f"`{query.text}`" if query.text else "no text"
-        lines.append(f"- order {query.order}, attempt {query.repair + 1}: {said} → {meant}")
-    prompt = prompt_words(decision)
-    if prompt:
-        lines += ["", "```text", prompt, "```"]
-    return "\n".join(lines)
 
 
 def _srgb(linear: float) -> float:
