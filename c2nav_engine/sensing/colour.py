@@ -20,7 +20,7 @@ ENCODED = np.rint(
 
 
 @compiled
-def encode_level(linear: float) -> int:
+def encode_level(linear: float | np.float32) -> int:
     """The 8-bit sRGB level of a linear value, clipped."""
     clipped = min(max(linear, np.float32(0.0)), np.float32(1.0))
     return ENCODED[int(clipped * np.float32(4096.0) + np.float32(0.5))]

@@ -8,7 +8,7 @@ because every later look at one counts a reference; and helpers take and return 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float32, Int32, UInt8, UInt32
@@ -19,16 +19,17 @@ from c2nav_engine.sensing.colour import DECODED, alpha_of, encode_level
 from c2nav_engine.sensing.mipmap import LEVELS
 from c2nav_engine.world.compiled import compiled
 
-LEAST_FACING = cast("float", np.float32(0.05))
+LEAST_FACING = np.float32(0.05)
 """Grazing surfaces are filtered as if seen at this cosine, so that they do not blur away."""
 
-ZERO = cast("float", np.float32(0.0))
-HALF = cast("float", np.float32(0.5))
-ONE = cast("float", np.float32(1.0))
-FOUR = cast("float", np.float32(4.0))
+ZERO = np.float32(0.0)
+HALF = np.float32(0.5)
+ONE = np.float32(1.0)
+FOUR = np.float32(4.0)
 """32-bit constants: a 64-bit one would widen everything it meets."""
 
-Triple = tuple[float, float, float]
+Real = float | np.float32
+Triple = tuple[Real, Real, Real]
 Four = tuple[int, int, int, int]
 
 
@@ -113,7 +114,7 @@ def facing(ray: Triple, normal: Triple) -> Triple:
 
 
 @compiled
-def mip_level(texels: float) -> int:
+def mip_level(texels: Real) -> int:
     """The level with one to four texels under a pixel that covers so many of the full texture.
 
     Rather too sharp than too soft: words and small things are what a model is asked about.
@@ -126,7 +127,7 @@ def mip_level(texels: float) -> int:
 
 
 @compiled
-def wrapped(base: float, size: int) -> int:
+def wrapped(base: Real, size: int) -> int:
     """A texel's index on a texture that repeats."""
     index = int(base)
     # Most coordinates need no wrapping, and a division is slow.
@@ -135,7 +136,7 @@ def wrapped(base: float, size: int) -> int:
 
 @compiled
 def texels_around(
-    texels: UInt32[np.ndarray, " texels"], level: tuple[int, int, int], uv: tuple[float, float]
+    texels: UInt32[np.ndarray, " texels"], level: tuple[int, int, int], uv: tuple[Real, Real]
 ) -> tuple[Four, Triple]:
     """The four texels around (u, v), and the weights of the last three.
 
@@ -156,13 +157,13 @@ def texels_around(
         int(texels[lower + left]),
         int(texels[lower + right]),
     )
-    wx, wy = x - across, y - down
+    wx, wy = x - np.float32(across), y - np.float32(down)
     both = wx * wy
     return four, (wx - both, wy - both, both)
 
 
 @compiled
-def mixed(four: Four, weights: Triple, shift: int) -> float:
+def mixed(four: Four, weights: Triple, shift: int) -> Real:
     """One linear colour channel between four packed texels."""
     a, b, c, d = four
     wb, wc, wd = weights
@@ -235,7 +236,7 @@ def paint(canvas: Canvas, hits: Hits, atlas: Atlas, look: Look) -> None:
 
 
 @compiled
-def alpha_mixed(four: Four, weights: Triple) -> float:
+def alpha_mixed(four: Four, weights: Triple) -> Real:
     """Alpha between four packed texels."""
     a, b, c, d = four
     wb, wc, wd = weights
