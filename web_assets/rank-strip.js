@@ -31,6 +31,9 @@ const styles = styled(`
   .rank { right: 6px; padding: 0 7px; border-radius: 6px; line-height: 22px; font-size: 13px; }
   .text .letter, .text .rank { position: static; margin: 11px 0 0 10px; flex: none; }
   .text .rank { margin: 11px 10px 0 auto; }
+  .pin { position: absolute; width: 18px; height: 18px; margin: -9px 0 0 -9px; border-radius: 50%;
+    border: 3px solid var(--c2-blue); outline: 2px solid #fff; top: calc(var(--row) * 100cqw / var(--ratio, 1)); }
+  .card { container-type: inline-size; }
   .caption { padding: 6px 8px 7px; font-size: 12px; line-height: 1.35; flex: 1; }
   .text .caption { font-size: 14px; padding: 12px 10px; }
   .x { color: var(--c2-vermilion); font-weight: 700; }
@@ -150,6 +153,8 @@ class RankStrip extends HTMLElement {
     node.append(h("span", { class: "letter" }, card.letter || "–"));
     if (card.ordinal) node.append(h("span", { class: "rank" }, card.ordinal));
     if (card.sha) node.append(h("img", { class: "picture", src: image(card.sha), alt: "", draggable: "false" }));
+    if (card.mark)
+      node.append(h("span", { class: "pin", style: `left:${100 * card.mark[0]}%;--row:${card.mark[1]}`, title: "the asked place" }));
     node.append(this.caption(card, decision));
     if (!card.sha) node.append(node.querySelector(".rank") ?? "");
     return node;
@@ -238,6 +243,10 @@ class RankStrip extends HTMLElement {
 
   begin(event, key) {
     if (event.button !== 0) return;
+    if (event.shiftKey) {
+      this.ask(event, key);
+      return;
+    }
     const node = event.currentTarget;
     const start = { x: event.clientX, y: event.clientY };
     const move = (next) => {
@@ -262,6 +271,16 @@ class RankStrip extends HTMLElement {
     window.addEventListener("pointermove", move);
     window.addEventListener("pointerup", end);
     window.addEventListener("pointercancel", end);
+  }
+
+  /** Shift and click: where else was this seen? */
+  ask(event, key) {
+    const card = this.state.decision.cards.find((one) => one.key === key);
+    const box = event.currentTarget.querySelector(".picture")?.getBoundingClientRect();
+    if (!box || event.clientY > box.bottom) return;
+    const column = (event.clientX - box.left) / box.width;
+    const row = (event.clientY - box.top) / box.height;
+    send("place", { sha256: card.sha, column, row });
   }
 
   /** The card under the pointer, and which third of it: before, with, after. */

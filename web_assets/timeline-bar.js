@@ -4,9 +4,10 @@ import { h, s, styled } from "./look.js";
 
 const LEFT = 128;
 const RIGHT = 18;
-const CURVE = { top: 8, height: 38 };
-const LANES = [60, 74, 88];
-const EVENTS = 102;
+const CURVE = { top: 6, height: 33 };
+const LANES = [50.5, 63, 75.5];
+const EVENTS = 88;
+const LAST = 101;
 const SIGNS = ["●", "▲", "■"];
 const NAMES = ["Seeing", "Transition", "Arriving"];
 
@@ -21,7 +22,7 @@ const styles = styled(`
   .mark text { font-size: 13px; fill: var(--c2-ink); text-anchor: middle; }
   .mark.far text { fill: var(--c2-far); }
   .mark.bad text, .bad { fill: var(--c2-vermilion); }
-  .mark.now text { fill: var(--c2-blue-text); font-size: 16px; }
+  .mark.now text { fill: var(--c2-blue-text); font-size: 15px; }
   .mark:hover text { fill: var(--c2-blue-text); }
   .mark rect { fill: transparent; }
   .leg { stroke: var(--c2-line); stroke-dasharray: 2 3; }
@@ -29,7 +30,7 @@ const styles = styled(`
   .here { stroke: var(--c2-blue); stroke-width: 2; }
   .heretext { fill: var(--c2-blue-text); font-weight: 600; paint-order: stroke; stroke: var(--c2-card);
     stroke-width: 4px; }
-  .regret { fill: var(--c2-vermilion); opacity: 0.85; }
+  .mark rect.regret { fill: var(--c2-vermilion); opacity: 0.85; }
   .tip { position: absolute; bottom: calc(100% + 4px); background: var(--c2-ink); color: var(--c2-card);
     border-radius: 6px; padding: 3px 8px; font-size: 12px; white-space: nowrap; pointer-events: none;
     max-width: 480px; overflow: hidden; text-overflow: ellipsis; }
@@ -122,12 +123,42 @@ class TimelineBar extends HTMLElement {
       const kind = `${event.fault ? "bad" : ""} ${event.step > here.step ? "far" : ""}`;
       parts.push(this.mark(event, EVENTS, event.sign, kind, { step: event.step }));
     }
-    for (const { decision, step, m } of timeline.regret) {
-      const height = Math.min(14, 3 + m * 3);
-      const bar = s("rect", { class: "regret", x: this.x(step) - 2, width: 4, y: 54 - height, height });
-      const group = s("g", { class: "mark" }, bar);
+    parts.push(...(timeline.place ? this.place(timeline.place) : this.regrets(timeline.regret)));
+    return parts;
+  }
+
+  regrets(regrets) {
+    const parts = [s("text", { x: 14, y: LAST + 4 }, "regret")];
+    for (const { decision, step, m } of regrets) {
+      const x = this.x(step);
+      const height = Math.min(11, 3 + m * 6);
+      const group = s(
+        "g",
+        { class: "mark" },
+        s("rect", { x: x - 6, y: LAST - 12, width: 12, height: 24 }),
+        s("rect", { class: "regret", x: x - 2, width: 4, y: LAST + 5 - height, height }),
+      );
       this.reacts(group, { step, words: `decision ${decision} · regret ${m.toFixed(1)} m` }, { decision });
       parts.push(group);
+    }
+    return parts;
+  }
+
+  /** Where an asked place was in view. */
+  place(place) {
+    const signs = { seen: "◉", vetoed: "✕", hidden: "◌", away: "·", unsure: "?" };
+    const words = {
+      seen: "in view",
+      vetoed: "in a vetoed view",
+      hidden: "hidden behind something",
+      away: "not looked at",
+      unsure: "in a view without recorded depth",
+    };
+    const parts = [s("text", { x: 14, y: LAST + 4 }, "asked place")];
+    for (const { step, status } of place.looks) {
+      const kind = { seen: "now", vetoed: "bad" }[status] ?? "far";
+      const mark = { step, words: `step ${step} · ${words[status]} · ${place.basis}` };
+      parts.push(this.mark(mark, LAST, signs[status], kind, { step }));
     }
     return parts;
   }

@@ -23,7 +23,7 @@ class WaitCard extends HTMLElement {
   }
 
   connectedCallback() {
-    const sections = ["asking", "offer", "working", "consent_to", "playing"];
+    const sections = ["asking", "offer", "working", "consent_to", "playing", "timeline"];
     this.stop = subscribe((state, changed) => {
       this.state = state;
       if (sections.some((name) => changed.has(name))) this.draw();
@@ -42,6 +42,7 @@ class WaitCard extends HTMLElement {
     if (host) cards.push(this.consent(host));
     if (offer) cards.push(this.offer(offer));
     if (working) cards.push(h("div", { class: "card" }, `${working}…`, h("progress")));
+    if (this.state.timeline.place) cards.push(this.place(this.state.timeline.place));
     if (asking) {
       const card = this.asking(asking);
       if (card) cards.push(card);
@@ -82,6 +83,20 @@ class WaitCard extends HTMLElement {
       h("span", {}, `Forks here: about ${cost.filter(Boolean).join(", ")}`),
       h("button", { class: "go", onclick: () => send("commit") }, "Fork"),
       h("button", { onclick: () => send("clear") }, "Cancel"),
+    );
+  }
+
+  place({ looks, basis }) {
+    const count = (status) => looks.filter((look) => look.status === status).length;
+    const words = [`in view in ${count("seen")} of ${looks.length} looks`];
+    if (count("vetoed")) words.push(`${count("vetoed")} only in a vetoed view`);
+    if (count("hidden")) words.push(`${count("hidden")} hidden`);
+    return h(
+      "div",
+      { class: "card" },
+      h("span", {}, `Asked place: ${words.join(", ")}`),
+      h("span", { class: "quiet" }, basis),
+      h("button", { onclick: () => send("forget_place") }, "Forget"),
     );
   }
 

@@ -27,6 +27,7 @@ from app.inspector.scene.fan import Fan
 from app.inspector.scene.goal import Goal
 from app.inspector.scene.layer import Layer
 from app.inspector.scene.mesh import Mesh
+from app.inspector.scene.pin import Pin
 from app.inspector.scene.trajectory import Trajectory
 from app.session.snapshot import Snapshot
 from app.session.worker import Session
@@ -128,6 +129,7 @@ class Shell:
             Body(scene),
             Fan(scene, self._session.dispatch),
             Goal(scene),
+            Pin(scene, self._session.dispatch),
             self._cameras,
             Mesh(scene, lambda: self._session.scene),
         ]

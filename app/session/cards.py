@@ -41,9 +41,19 @@ def decision_json(snapshot: Snapshot) -> Json | None:
         "orders": decision.question.orders.value if decision.question else "",
         "source": _source(snapshot, decision),
         "outcome": outcome_words(said, decision.letters),
-        "cards": [_card(c, decision, ranks) for c in decision.facts.candidates],
+        "cards": [
+            _card(c, decision, ranks) | _mark(snapshot, c) for c in decision.facts.candidates
+        ],
         "context": _context(decision),
     }
+
+
+def _mark(snapshot: Snapshot, candidate: Candidate) -> Json:
+    """Where an asked place is in a candidate's picture."""
+    place = snapshot.place
+    if place is None or candidate.picture is None:
+        return {"mark": None}
+    return {"mark": place.marks.get(candidate.picture.sha256)}
 
 
 def _context(decision: Decision) -> list[Json]:

@@ -186,10 +186,13 @@ class Layer(Command):
 
 
 class Place(Command):
-    """Ask where a place was seen: a surface point, or a pixel of a recorded view."""
+    """Ask where a place was seen: a point, a ray of the map, a picture's pixel, or the goal."""
 
     type: Literal["place"] = "place"
     point_m: tuple[float, float, float] | None = None
+    ray_from_m: tuple[float, float, float] | None = None
+    ray_along: tuple[float, float, float] | None = None
+    goal: bool = False
     sha256: str = Field(default="", max_length=64)
     column: float = 0.0
     row: float = 0.0

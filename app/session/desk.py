@@ -17,6 +17,7 @@ from app.session.draft import Draft
 from app.session.judging import Bench
 from app.session.opened import Choice, Opened, Opening, Run
 from app.session.pictures import Album
+from app.session.placing import Sight
 from app.session.snapshot import Assessment, Chooser, Notice, Snapshot
 from app.session.story import Story, story_of
 from c2nav_engine.errors import C2NavError
@@ -56,6 +57,7 @@ class Desk:
         self.runs: dict[str, Run] = {}
         self.asked: set[str] = set()
         self.scene: Scene | None = None
+        self.sight: Sight | None = None
         self.allowed = not opened.sends_to
         self.commit_when_answered = False
         self.due_s = 0.0
@@ -95,6 +97,7 @@ class Desk:
         self.album.clear()
         self.asked.clear()
         self.scene = None
+        self.sight = None
         self.commit_when_answered = False
         self.bench = Bench(opening.trace_sha256)
         branch = self._root(opening)

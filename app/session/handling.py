@@ -6,11 +6,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from app.session import asking, driving, judging, moving, placing
 from app.session import commands as c
-from app.session import driving, judging, moving
 from app.session.desk import Desk
 from app.session.draft import Draft, arranged, none_of_these, press, take_back, tie
 from app.session.opened import Choice
+
+_ON_THE_WAY_M = 0.2
+"""A click this near to the trajectory means its step, not the floor below."""
 
 Handler = Callable[[Desk, Any], None]
 
@@ -103,6 +106,17 @@ def _consent(desk: Desk, command: c.Consent) -> None:
         driving.ask(desk, desk.snapshot.branch.branch_id)
 
 
+def _place(desk: Desk, command: c.Place) -> None:
+    story = desk.snapshot.story
+    ray_from_m, ray_along = command.ray_from_m, command.ray_along
+    if ray_from_m is not None and ray_along is not None:
+        step = placing.nearest_step(story, ray_from_m, ray_along, within_m=_ON_THE_WAY_M)
+        if step is not None:
+            moving.go(desk, "", -1, step)
+            return
+    asking.ask_place(desk, command)
+
+
 def _layer(desk: Desk, command: c.Layer) -> None:
     layers = desk.snapshot.view.layers
     layers = layers | {command.name} if command.on else layers - {command.name}
@@ -165,6 +179,8 @@ _HANDLERS: dict[type[c.Command], Handler] = {
     c.Hover: _view(hovered=lambda command: command.key),
     c.Camera: _view(camera=lambda command: command.mode),
     c.Layer: _layer,
+    c.Place: _place,
+    c.ForgetPlace: lambda desk, _: desk.change(place=None),
     c.Verdict: _judged(lambda command: judging.verdict(command.value)),
     c.Tag: _judged(lambda command: judging.tag(command.value)),
     c.Flag: _judged(lambda _: judging.flag()),

@@ -11,6 +11,7 @@ from app.session.draft import Draft
 from app.session.opened import Choice, Entry
 from app.session.story import Stop, Story
 from c2nav_engine.contract.prompt import Ranked
+from c2nav_engine.geometry import Point
 
 LAYERS = ("scene", "trajectory", "fan", "goal", "reference", "markers", "thumbnails")
 """What can be shown and hidden in the map; goal and reference path start hidden."""
@@ -89,6 +90,31 @@ class Assessment:
     off_path_m: float | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """What one look says of an asked place: "seen", "vetoed", "hidden", "away" or "unsure"."""
+
+    step: int
+    status: str
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceAnswer:
+    """Where an asked place was seen.
+
+    Attributes:
+        point_m: The place.
+        sightings: One per look, in order.
+        marks: Digest of a picture → where the place is in it, as fractions of width and height.
+        basis: What the answer rests on, for people.
+    """
+
+    point_m: Point
+    sightings: tuple[Sighting, ...]
+    marks: Mapping[str, tuple[float, float]]
+    basis: str
+
+
 SUSPECT_M = 0.25
 """Regret below this is noise of a bundle's length [C]."""
 
@@ -154,6 +180,7 @@ class Snapshot:
         no_scene: Why there is no scene; "" where there is one or it is on its way.
         scene_serial: Counts the scenes that came.
         parent: For a fork, the story it left.
+        place: The asked place, and where it was seen in the branch in view.
         assessed: Branch → decision → what the truth says of it.
     """
 
@@ -178,6 +205,7 @@ class Snapshot:
     no_scene: str = ""
     scene_serial: int = 0
     parent: Story | None = None
+    place: PlaceAnswer | None = None
     assessed: dict[str, dict[int, Assessment]] = field(
         default_factory=dict[str, dict[int, Assessment]]
     )

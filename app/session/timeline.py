@@ -14,7 +14,7 @@ from c2nav_engine.episodes.episode import Episode
 
 Json = dict[str, Any]
 
-FALLBACK = "fallback"
+_SIGNS = {"fallback": "✕", "stalled": "✕", "glance": "↻", "walk-back": "↩"}
 
 
 def timeline_of(snapshot: Snapshot) -> Json:
@@ -32,6 +32,7 @@ def timeline_of(snapshot: Snapshot) -> Json:
         "marks": _marks(story),
         "events": [*_events(story), *_people(story, snapshot.judgements)],
         "legs": _legs(story),
+        "place": _place(snapshot),
         "regret": [
             {"decision": s.decision, "step": story.decisions[s.decision].step, "m": s.regret_m}
             for s in snapshot.assessments.values()
@@ -74,12 +75,11 @@ def _mark(decision: Decision) -> Json:
 
 
 def _events(story: Story) -> list[Json]:
-    signs = {FALLBACK: "✕", "stalled": "✕"}
     return [
         {
-            "sign": signs.get(event.name, "·"),
+            "sign": _SIGNS.get(event.name, "•"),
             "step": step,
-            "fault": event.name in signs,
+            "fault": _SIGNS.get(event.name) == "✕",
             "words": f"{event.name}: {event.detail}" if event.detail else event.name,
         }
         for _, step, event in story.events
@@ -103,6 +103,17 @@ def _people(story: Story, judgements: dict[int, Judgement]) -> list[Json]:
         if number < len(story.decisions)
     ]
     return [*overrides, *reviews]
+
+
+def _place(snapshot: Snapshot) -> Json | None:
+    """The lane of an asked place."""
+    place = snapshot.place
+    if place is None:
+        return None
+    return {
+        "basis": place.basis,
+        "looks": [{"step": s.step, "status": s.status} for s in place.sightings],
+    }
 
 
 def _legs(story: Story) -> list[Json]:

@@ -59,9 +59,9 @@ def _block(snapshot: Snapshot) -> str:
             [
                 [
                     str(k.cycle),
-                    f"{k.ground:+d}",
-                    f"{k.journey:+d}",
-                    f"{k.lookback:+d}",
+                    _signed(k.ground),
+                    _signed(k.journey),
+                    _signed(k.lookback),
                     k.verdict,
                     k.event,
                 ]
@@ -81,3 +81,7 @@ def _evidence(ladder: LadderState) -> Markup:
             for name, value in rows
         )
     )
+
+
+def _signed(value: int) -> str:
+    return f"{value:+d}".replace("+0", "0").replace("-", "−")

@@ -39,6 +39,9 @@ def _block(snapshot: Snapshot) -> str:
         _transport(snapshot),
         m.heading("Suspects, worst first"),
         _suspects(snapshot),
+        Markup('<div class="c2-buttons c2-small">{}</div>').format(
+            m.action("Was the goal in view?", c.Place(goal=True))
+        ),
         m.heading("This run"),
         m.facts(
             [
@@ -109,7 +112,7 @@ def _suspects(snapshot: Snapshot) -> Markup:
     )
 
 
-def _regret(suspect: Assessment) -> str:
+def _regret(suspect: Assessment) -> str | Markup:
     if suspect.regret_m is None:
         return suspect.words
-    return f"+{suspect.regret_m:.1f} m {suspect.words}".strip()
+    return Markup("+{:.1f} m<small>{}</small>").format(suspect.regret_m, suspect.words)
