@@ -27,6 +27,7 @@ COMMANDS = (
     "question",
     "fork",
     "trace",
+    "turning",
 )
 """Subcommands; each is a function, or a table of them, of that name in `app.commands`."""
 

@@ -213,8 +213,6 @@ def _headings_deg(candidates: Sequence[Candidate]) -> dict[Key, float]:
 def _notes(state: State) -> dict[str, str]:
     """What Seeing's histories hold, in plain words for people."""
     return {
-        "travelled": f"{state.odometer.travelled_m:.1f} m",
-        "in the leg": f"{state.leg_travelled_m:.1f} m",
         "last elections": ", ".join(key or "none" for key in state.history.elected[-4:]) or "none",
         "fallbacks in a row": str(state.fallbacks),
     }

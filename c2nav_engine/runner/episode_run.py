@@ -165,9 +165,20 @@ class EpisodeRun:
             request, exchange.response, ranked=exchange.ranked, override=exchange.override
         )
 
+    def resume(self, exchange: Exchange) -> Exchange:
+        """Take over any recorded exchange whole; the shell is not asked."""
+        return self._close_exchange(
+            self._pending(),
+            exchange.response,
+            ranked=exchange.ranked,
+            override=exchange.override,
+            truth=exchange.truth,
+        )
+
     def end(self, outcome: EpisodeOutcome, error: str = "") -> Footer:
         """Close the episode: metrics, footer, and the trace's last record."""
-        metrics = self._parts.score(self.exchanges, outcome) if self._parts.score else {}
+        score = self._parts.score
+        metrics = score(self.exchanges, outcome) if score else dict[str, float | int | None]()
         self.footer = Footer(outcome, metrics, error)
         self.pending = None
         self._parts.loop.close()

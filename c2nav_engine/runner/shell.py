@@ -6,6 +6,7 @@ and pictures; the truth goes to the record beside them.
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Sequence
 from typing import Protocol, runtime_checkable
 
@@ -92,6 +93,13 @@ class LiveShell:
         self._memory = FreeSpaceMemory(profile)
         self._goal_distance = goal_distance
         self._sensors = sensors
+
+    def copy(self) -> LiveShell:
+        """The same body at the same moment, to go on independently; scene and floor are shared."""
+        twin = copy.copy(self)
+        twin._memory = copy.deepcopy(self._memory)
+        twin._sensors = copy.deepcopy(self._sensors)
+        return twin
 
     def look(self, request: Look) -> tuple[Seen, Truth]:
         """Render the rig's cameras, update the free-space memory, and read every heading."""
