@@ -1,4 +1,4 @@
-"""`c2nav episodes list|show|check`: what a source holds, and whether it can be run."""
+"""`c2nav episodes list|show|check|make`: what a source holds, whether it runs, and new ones."""
 
 from __future__ import annotations
 
@@ -10,14 +10,26 @@ import tyro
 from rich.console import Console
 from rich.table import Table
 
+from app.commands.checking import check_source, checked_json, print_checked
 from app.commands.options import EpisodesOpt, JsonOpt, ScenesOpt, SourceArg, ids
 from app.commands.output import print_json
+from app.commands.scenes import opened_scene
 from c2nav_engine.contract.route import parse_english
 from c2nav_engine.episodes.episode import Episode
+from c2nav_engine.episodes.files import write_episodes
 from c2nav_engine.episodes.profile import profile_named
-from c2nav_engine.errors import C2NavError, SceneError
-from c2nav_engine.runner.source import Source, open_source
-from c2nav_engine.runner.worlds import Worlds, WorldsConfig
+from c2nav_engine.errors import UsageError
+from c2nav_engine.runner.source import open_source
+
+ProfileOpt = Annotated[str, tyro.conf.arg(metavar="NAME", help="Embodiment profile.")]
+HeadingsOpt = Annotated[
+    Path | None,
+    tyro.conf.arg(metavar="FILE", help="Take start rotations from this file of the same episodes."),
+]
+GroundTruthOpt = Annotated[
+    Path | None,
+    tyro.conf.arg(metavar="FILE", help="Reference positions; the `_gt` file beside by default."),
+]
 
 
 def list_episodes(
@@ -61,74 +73,68 @@ def show_episode(
     return 0
 
 
-def check_episodes(
+def check(
     source: SourceArg,
     scenes: ScenesOpt = None,
     episodes: EpisodesOpt = "",
-    profile: str = "vlnce",
-    headings: Path | None = None,
+    profile: ProfileOpt = "vlnce",
+    headings: HeadingsOpt = None,
+    ground_truth: GroundTruthOpt = None,
     json: JsonOpt = False,
 ) -> int:
-    """Check schema, scenes, starts, goals and distances of a source."""
-    from c2nav_engine.world.episode_check import check_episode
-
-    opened = open_source(source, scenes=scenes, headings=headings)
-    chosen = opened.chosen(ids(episodes))
-    missing = missing_scenes(opened, chosen)
-    worlds = Worlds(opened, WorldsConfig(profile_named(profile)))
-    findings: list[tuple[str, str]] = []
-    for item in chosen:
-        if item.scene_id in missing:
-            continue
-        try:
-            found = check_episode(item, worlds.of(item.scene_id).surface)
-        except C2NavError as error:
-            found = [str(error)]
-        findings += [(item.episode_id, text) for text in found]
-    return _report(chosen, missing, findings, json=json)
-
-
-def missing_scenes(source: Source, chosen: tuple[Episode, ...]) -> dict[str, list[str]]:
-    """Scene ids that do not resolve, with the episodes they block."""
-    missing: dict[str, list[str]] = {}
-    for item in chosen:
-        try:
-            source.scene_file(item.scene_id)
-        except SceneError:
-            missing.setdefault(item.scene_id, []).append(item.episode_id)
-    return missing
-
-
-def _report(
-    chosen: tuple[Episode, ...],
-    missing: dict[str, list[str]],
-    findings: list[tuple[str, str]],
-    *,
-    json: bool,
-) -> int:
-    ok = not missing and not findings
+    """Check schema, scenes, starts, goals and distances; exit code 1 where anything is amiss."""
+    opened = open_source(source, scenes=scenes, headings=headings, ground_truth=ground_truth)
+    found = check_source(opened, opened.chosen(ids(episodes)), profile_named(profile), quiet=json)
     if json:
-        print_json(
-            {
-                "episodes": len(chosen),
-                "ok": ok,
-                "missing_scenes": missing,
-                "findings": [{"episode_id": e, "finding": text} for e, text in findings],
-            }
-        )
-        return 0 if ok else 1
+        print_json(checked_json(found))
+    else:
+        print_checked(found, Console(highlight=False, soft_wrap=False))
+    return 0 if found.ok else 1
+
+
+def make(
+    scene: Annotated[
+        str,
+        tyro.conf.Positional,
+        tyro.conf.arg(metavar="SCENE", help="A mesh, a scene id below --scenes, or builtin/NAME."),
+    ],
+    out: Annotated[Path, tyro.conf.arg(metavar="FILE", help=".json or .json.gz to write.")],
+    count: Annotated[int, tyro.conf.arg(metavar="N", help="How many episodes.")] = 10,
+    seed: Annotated[int, tyro.conf.arg(metavar="S", help="The same seed, the same episodes.")] = 0,
+    scenes: ScenesOpt = None,
+    profile: ProfileOpt = "vlnce",
+    json: JsonOpt = False,
+) -> int:
+    """Sample episodes on any mesh and write them in the R2R-CE schema."""
+    from c2nav_engine.world.episode_make import make_episodes
+
+    if count < 1:
+        message = f"expected at least one episode, came --count {count}"
+        raise UsageError(message)
+    if not out.name.endswith((".json", ".json.gz")):
+        message = f"expected a file that ends in .json or .json.gz, came --out {out}"
+        raise UsageError(message)
+    opened = opened_scene(scene, scenes, profile_named(profile))
+    world = opened.world
+    made = make_episodes(
+        world.surface, world.scene, count=count, seed=seed, scene_id=opened.scene_id
+    )
+    write_episodes(out, made)
+    facts = {
+        "out": str(out),
+        "episodes": len(made),
+        "scene_id": opened.scene_id,
+        "surface": world.surface.source,
+        "scenes": "" if opened.scenes is None else str(opened.scenes),
+    }
+    if json:
+        print_json(facts)
+        return 0
     console = Console(highlight=False)
-    if missing:
-        blocked = sum(map(len, missing.values()))
-        console.print(f"{len(missing)} scenes are missing and block {blocked} episodes:")
-        for scene_id, episodes in sorted(missing.items()):
-            console.print(f"  {scene_id}  ({len(episodes)} episodes)", markup=False)
-        console.print("Put them below the folder that --scenes names, as mp3d/SCAN/SCAN.glb")
-    for episode_id, text in findings:
-        console.print(f"episode {episode_id}: {text}", markup=False)
-    if ok:
-        console.print(f"{len(chosen)} episodes hold")
-    return 0 if ok else 1
+    console.print(f"{len(made)} episodes in {opened.scene_id} on a {world.surface.source} floor")
+    below = "" if opened.scenes is None else f" --scenes {opened.scenes}"
+    console.print(f"c2nav inspect {out}{below}", markup=False, soft_wrap=True)
+    return 0
 
 
 def _brief(item: Episode) -> dict[str, object]:
@@ -141,5 +147,5 @@ def _brief(item: Episode) -> dict[str, object]:
     }
 
 
-episodes = {"list": list_episodes, "show": show_episode, "check": check_episodes}
+episodes = {"list": list_episodes, "show": show_episode, "check": check, "make": make}
 """Subcommands of `c2nav episodes`."""

@@ -100,8 +100,7 @@ def spec_of(setting: Setting, *, variants: str, episodes: str, seeds: str) -> Ru
         preset(name)
     source = source_of(setting)
     chosen = source.chosen(ids(episodes))
-    for scene_id in dict.fromkeys(episode.scene_id for episode in chosen):
-        source.scene_file(scene_id)
+    source.require_scenes(chosen)
     return RunSpec(
         setting=setting,
         episodes=tuple(episode.episode_id for episode in chosen),

@@ -238,9 +238,8 @@ class Workbench:
             fork_decision=spec.fork_decision,
             templates=template.texts(),
             extra={
-                "source": self.source.file.name,
-                "source_sha256": self.source.file.sha256,
-                "ground_truth": self.source.ground_truth_name,
+                **self.source.facts(),
+                **({"surface_note": stage.world.note} if stage.world.note else {}),
                 "renderer": stage.world.renderer.name,
                 "noise": json.dumps(asdict(self.noise)),
             },

@@ -34,12 +34,14 @@ class Source:
         scenes: Folder below which scene ids resolve; None for built-in houses.
         ground_truth: Positions by episode id, where a file gives them.
         ground_truth_name: That file's name, else "reference path".
+        own_headings: Heading version of the file itself; `file.headings` is the one in use.
     """
 
     file: EpisodeFile
     scenes: Path | None
     ground_truth: Mapping[str, tuple[Point, ...]]
     ground_truth_name: str
+    own_headings: str = ""
 
     def episode(self, episode_id: str) -> Episode:
         """The episode of that id; raises `UsageError` naming some that exist."""
@@ -71,6 +73,61 @@ class Source:
         path = self.scene_file(scene_id)
         return builtin_scene(scene_id) if path is None else load_scene(path)
 
+    def missing_scenes(self, chosen: Sequence[Episode]) -> dict[str, tuple[str, ...]]:
+        """Scene ids that do not resolve, each with the ids of the episodes that it blocks."""
+        missing: dict[str, tuple[str, ...]] = {}
+        found: set[str] = set()
+        for episode in chosen:
+            scene_id = episode.scene_id
+            if scene_id in found:
+                continue
+            if scene_id not in missing and self._has(scene_id):
+                found.add(scene_id)
+                continue
+            missing[scene_id] = (*missing.get(scene_id, ()), episode.episode_id)
+        return missing
+
+    def require_scenes(self, chosen: Sequence[Episode]) -> None:
+        """Raise one `SceneError` that lists every missing scene with how many episodes it blocks.
+
+        A single missing scene is named with all the places where it was sought.
+        """
+        missing = self.missing_scenes(chosen)
+        if len(missing) == 1:
+            self.scene_file(next(iter(missing)))
+        if missing:
+            blocked = sum(map(len, missing.values()))
+            where = f"below {self.scenes}" if self.scenes else "and no scenes folder is named"
+            lines = [f"  {scene_id}  ({len(ids)})" for scene_id, ids in sorted(missing.items())]
+            message = "\n".join(
+                [
+                    f"expected {len(missing)} scenes that are not there ({where}); they block "
+                    f"{blocked} of {len(chosen)} episodes:",
+                    *lines,
+                    "name the folder that holds them with --scenes DIR (mp3d/SCAN/SCAN.glb below "
+                    "it), or choose other episodes; `c2nav episodes check` says more",
+                ]
+            )
+            raise SceneError(message)
+
+    def facts(self) -> dict[str, str]:
+        """What a run record says about where its episode came from, name → text."""
+        own = self.own_headings
+        told = {"source_headings": own} if own and own != self.file.headings else {}
+        return {
+            "source": self.file.name,
+            "source_sha256": self.file.sha256,
+            "ground_truth": self.ground_truth_name,
+            **told,
+        }
+
+    def _has(self, scene_id: str) -> bool:
+        try:
+            self.scene_file(scene_id)
+        except SceneError:
+            return False
+        return True
+
     def ground_truth_of(self, episode: Episode) -> tuple[Point, ...]:
         """Reference positions for nDTW: the file's, else the densified reference path."""
         known = self.ground_truth.get(episode.episode_id)
@@ -101,13 +158,25 @@ def open_source(
     if not path.is_file():
         message = f"expected `builtin` or an R2R-CE file (.json, .json.gz), came {name!r}: no file"
         raise EpisodeError(message)
-    file = read_episodes(path)
-    if headings is not None:
-        file = read_headings(headings, file)
-    truth = ground_truth or ground_truth_beside(path, file)
+    own = read_episodes(path)
+    file = own if headings is None else read_headings(headings, own)
+    truth = ground_truth or _ground_truth_for(path, file, headings)
     return Source(
         file=file,
         scenes=scenes,
         ground_truth=read_ground_truth(truth) if truth else {},
         ground_truth_name=truth.name if truth else "reference path",
+        own_headings=own.headings,
+    )
+
+
+def _ground_truth_for(path: Path, file: EpisodeFile, headings: Path | None) -> Path | None:
+    """The ground truth that belongs to the headings in use, which may be another file's.
+
+    With borrowed headings, the file's own `_gt` would be another version's walk: it is not taken.
+    """
+    if headings is None:
+        return ground_truth_beside(path, file)
+    return ground_truth_beside(headings, file) or ground_truth_beside(
+        path.with_name(headings.name), file
     )

@@ -35,13 +35,20 @@ class World:
     Attributes:
         scene: The mesh.
         surface: The floor for the profile.
+        note: What a record should say about that floor; "" when it fits the profile.
     """
 
     def __init__(
-        self, scene: Scene, surface: Surface, renderer: Callable[[Scene], Renderer]
+        self,
+        scene: Scene,
+        surface: Surface,
+        renderer: Callable[[Scene], Renderer],
+        *,
+        note: str = "",
     ) -> None:
         self.scene = scene
         self.surface = surface
+        self.note = note
         self._make_renderer = renderer
         self._renderer: Renderer | None = None
         self._fields: OrderedDict[Point, DistanceField] = OrderedDict()
@@ -98,20 +105,23 @@ class Worlds:
             self._kept.move_to_end(scene_id)
             return self._kept[scene_id]
         scene = self._source.scene(scene_id)
-        world = World(scene, self._surface(scene_id, scene), self._config.renderer)
+        surface, note = self._surface(scene_id, scene)
+        world = World(scene, surface, self._config.renderer, note=note)
         self._kept[scene_id] = world
         while len(self._kept) > KEPT_SCENES:
             self._kept.popitem(last=False)
         return world
 
-    def _surface(self, scene_id: str, scene: Scene) -> Surface:
+    def _surface(self, scene_id: str, scene: Scene) -> tuple[Surface, str]:
         """The `.navmesh` beside the scene where there is one, else a floor built from the mesh."""
         path = self._source.scene_file(scene_id)
+        profile = self._config.profile
         if path is not None and path.with_suffix(".navmesh").is_file():
-            from c2nav_engine.world.navmesh import read_navmesh
+            from c2nav_engine.world.navmesh import profile_note, read_navmesh
 
-            return read_navmesh(path.with_suffix(".navmesh"))
-        return built_surface(scene, self._config.profile, self._config.cache or cache_folder())
+            mesh = read_navmesh(path.with_suffix(".navmesh"))
+            return mesh, profile_note(mesh, profile)
+        return built_surface(scene, profile, self._config.cache or cache_folder()), ""
 
 
 def built_surface(scene: Scene, profile: Profile, cache: Path) -> Surface:

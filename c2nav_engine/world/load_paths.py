@@ -6,8 +6,18 @@ from pathlib import Path, PurePosixPath
 
 from c2nav_engine.errors import SceneError
 
-PREFIXES = ("", "mp3d", "data/scene_datasets", "data/scene_datasets/mp3d")
-"""Folders that an id may carry, or lack, compared with how the files lie."""
+PREFIXES = (
+    "",
+    "mp3d",
+    "data/scene_datasets",
+    "data/scene_datasets/mp3d",
+    "scene_datasets",
+    "scene_datasets/mp3d",
+    "v1/tasks",
+    "v1/tasks/mp3d",
+)
+"""Folders that an id may carry, or lack, compared with how the files lie; the last two are where
+Matterport's own download script puts them."""
 
 SUFFIXES = (".glb", ".ply", ".gltf", ".obj")
 
@@ -30,11 +40,23 @@ def scene_path(scenes: Path, scene_id: str) -> Path:
         path = scenes / name
         if path.is_file() and _lies_below(path, scenes):
             return path
+    if not scenes.is_dir():
+        message = f"expected a folder at {scenes}, found none; name it with --scenes"
+        raise SceneError(message)
     message = (
-        f"expected scene {scene_id!r} below {scenes}, found none of {', '.join(names)}; "
+        f"expected scene {scene_id!r} below {scenes}, found none of {_listed(names)}; "
         "put it there, or name another folder with --scenes"
     )
     raise SceneError(message)
+
+
+def _listed(names: list[str]) -> str:
+    """The likeliest places whole; of the other formats, the place that is tried first."""
+    suffix = PurePosixPath(names[0]).suffix
+    likeliest = [name for name in names if PurePosixPath(name).suffix == suffix]
+    others = {PurePosixPath(name).suffix: name for name in reversed(names)}
+    others.pop(suffix)
+    return ", ".join([*likeliest, *others.values()])
 
 
 def _lies_below(path: Path, scenes: Path) -> bool:
@@ -48,6 +70,9 @@ def _variants(wanted: PurePosixPath) -> list[str]:
     stems = [core.with_suffix("") if core.suffix in SUFFIXES else core]
     if len(stems[0].parts) == 1:
         stems.append(stems[0] / stems[0].name)
+    elif stems[0].parts[-2] == stems[0].name:
+        # SCAN/SCAN.glb may lie flat, as SCAN.glb.
+        stems.append(stems[0].parent.parent / stems[0].name)
     suffixes = dict.fromkeys([core.suffix, *SUFFIXES] if core.suffix in SUFFIXES else SUFFIXES)
     tried = [str(wanted)] if wanted.suffix in SUFFIXES else []
     tried += [
