@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import signal
+import sys
 from pathlib import Path
-from typing import Annotated, Any
+from types import FrameType
+from typing import Annotated
 
 import tyro
-from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
-from rich.table import Table
 
 from app.commands.options import (
     EpisodesOpt,
@@ -30,18 +22,15 @@ from app.commands.options import (
     words,
 )
 from app.commands.output import print_json
+from app.commands.run_words import error_lines, progress_bar, tell_rows
 from c2nav_engine.errors import UsageError
-from c2nav_engine.experiments.batch import run_batch
-from c2nav_engine.experiments.columns import Row
-from c2nav_engine.experiments.local import LocalExecutor
+from c2nav_engine.experiments.batch import BatchResult, run_batch
+from c2nav_engine.experiments.executors.choosing import EXECUTORS, executor_for
 from c2nav_engine.experiments.rankers import DEFAULT_RANKER, RANKERS
 from c2nav_engine.experiments.spec import RunSpec, Setting
 from c2nav_engine.experiments.summary import summarise
-from c2nav_engine.experiments.working import Finished, source_of
+from c2nav_engine.experiments.working import source_of
 from c2nav_engine.navigator.variants import preset
-
-MOST_ROWS = 40
-"""Longer tables are left to the files."""
 
 
 def run(
@@ -54,9 +43,19 @@ def run(
     episodes: EpisodesOpt = "",
     seeds: Annotated[str, tyro.conf.arg(metavar="N,N", help="Run seeds.")] = "0",
     profile: Annotated[str, tyro.conf.arg(help="Embodiment profile.")] = "vlnce",
-    headings: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None,
-    ground_truth: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None,
-    workers: Annotated[int, tyro.conf.arg(help="Processes.")] = 1,
+    headings: Annotated[
+        Path | None, tyro.conf.arg(metavar="FILE", help="Start rotations of the same episodes.")
+    ] = None,
+    ground_truth: Annotated[
+        Path | None, tyro.conf.arg(metavar="FILE", help="Reference positions for nDTW.")
+    ] = None,
+    workers: Annotated[int, tyro.conf.arg(help="Processes, actors or jobs; one core each.")] = 1,
+    executor: Annotated[str, tyro.conf.arg(help=f"One of {', '.join(EXECUTORS)}.")] = "local",
+    executor_opt: Annotated[
+        tuple[str, ...],
+        tyro.conf.UseAppendAction,
+        tyro.conf.arg(metavar="KEY=VALUE", help="An option of the executor; repeat for more."),
+    ] = (),
     odometry_noise: Annotated[
         float, tyro.conf.arg(help="Deviation of steps and turns, as a fraction of them.")
     ] = 0.0,
@@ -81,16 +80,33 @@ def run(
         sliding=sliding,
     )
     spec = spec_of(setting, variants=variants, episodes=episodes, seeds=seeds)
-    rows = _run(spec, out, LocalExecutor(workers), resume=resume, quiet=json)
+    chosen = executor_for(executor, setting, workers=workers, options=key_values(executor_opt))
+    # A scheduler that takes the machine back asks politely first: as good as an interrupt.
+    signal.signal(signal.SIGTERM, _interrupt)
+    with progress_bar(quiet=json) as tell:
+        result = run_batch(spec, out, chosen, resume=resume, progress=tell)
     if json:
-        print_json({"run": str(out), **summarise(rows)})
+        print_json({"run": str(out), **summarise(result.rows)})
     else:
-        _tell(rows)
-    return 1 if any(row["outcome"] == "error" for row in rows) else 0
+        tell_rows(result.rows)
+    return _code(result)
 
 
-def spec_of(setting: Setting, *, variants: str, episodes: str, seeds: str) -> RunSpec:
-    """The run that the words of a command line describe; raises `InputError`."""
+def spec_of(
+    setting: Setting, *, variants: str, episodes: str, seeds: str, find_scenes: bool = True
+) -> RunSpec:
+    """The run that the words of a command line describe.
+
+    Args:
+        setting: What its tasks share.
+        variants: Comma-separated presets.
+        episodes: Ids, as in 1,5-9; "" for all.
+        seeds: Comma-separated whole numbers.
+        find_scenes: Whether a missing scene is an error.
+
+    Raises:
+        InputError: A name, file or scene does not exist.
+    """
     setting.check()
     if RANKERS[setting.ranker].interactive:
         message = f"the ranker {setting.ranker} needs the inspector; use `c2nav inspect`"
@@ -100,81 +116,26 @@ def spec_of(setting: Setting, *, variants: str, episodes: str, seeds: str) -> Ru
         preset(name)
     source = source_of(setting)
     chosen = source.chosen(ids(episodes))
-    source.require_scenes(chosen)
+    if find_scenes:
+        for scene_id in dict.fromkeys(episode.scene_id for episode in chosen):
+            source.scene_file(scene_id)
     return RunSpec(
         setting=setting,
         episodes=tuple(episode.episode_id for episode in chosen),
         variants=names,
         seeds=whole_numbers(seeds, "seeds"),
+        scenes=tuple(episode.scene_id for episode in chosen),
     )
 
 
-def _run(
-    spec: RunSpec, out: Path, executor: LocalExecutor, *, resume: bool, quiet: bool
-) -> list[Row]:
-    columns = (
-        TextColumn("episodes"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[so_far]}"),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True), disable=quiet) as progress:
-        bar = progress.add_task("", total=None, so_far="")
-        successes: list[int] = []
-
-        def tell(finished: Finished, done: int, total: int) -> None:
-            successes.append(int(finished.row.get("success") or 0))
-            share = sum(successes) / len(successes)
-            progress.update(bar, completed=done, total=total, so_far=f"SR {share:.0%}")
-
-        return run_batch(spec, out, executor, resume=resume, progress=tell)
+def _code(result: BatchResult) -> int:
+    """Tell what failed; 2 when an episode or scene cannot be used, 1 for any other error."""
+    for line in error_lines(result.errors):
+        sys.stderr.write(f"c2nav: {line}\n")
+    if result.bad_input:
+        return 2
+    return 1 if any(row["outcome"] == "error" for row in result.rows) else 0
 
 
-def _tell(rows: Sequence[Row]) -> None:
-    """The table of episodes, then one line per variant."""
-    console = Console()
-    table = Table(box=None, header_style="bold")
-    for name in ("episode", "variant", "outcome", "NE m", "OSR", "SR", "SPL", "nDTW", "steps"):
-        table.add_column(
-            name, justify="left" if name in {"episode", "variant", "outcome"} else "right"
-        )
-    shown = rows if len(rows) <= MOST_ROWS else ()
-    for row in shown:
-        table.add_row(
-            str(row["episode_id"]),
-            str(row["variant"]),
-            str(row["outcome"]),
-            *(_cell(row.get(name)) for name in ("ne_m", "os", "success", "spl", "ndtw", "steps")),
-        )
-    if shown:
-        console.print(table)
-    for group in summarise(rows)["groups"]:
-        console.print(_group_line(group))
-
-
-def _group_line(group: Mapping[str, Any]) -> str:
-    """One variant's rates with their intervals, for people: percent on the screen only."""
-
-    def percent(name: str) -> str:
-        entry = group[name]
-        if entry is None:
-            return "–"
-        return f"{100 * entry['value']:.1f} % ({100 * entry['low']:.0f}–{100 * entry['high']:.0f})"
-
-    error = group["ne_m"]
-    parts = [
-        f"NE {error['value']:.2f} m" if error else "NE –",
-        f"OSR {percent('osr')}",
-        f"SR {percent('sr')}",
-        f"SPL {100 * group['spl']['value']:.1f} %" if group["spl"] else "SPL –",
-    ]
-    head = f"{group['variant']} · {group['ranker']} · {group['n']} episodes: "
-    return head + " · ".join(parts)
-
-
-def _cell(value: str | float | None) -> str:
-    if value is None:
-        return "–"
-    return f"{value:.2f}" if isinstance(value, float) else str(value)
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    raise KeyboardInterrupt

@@ -6,6 +6,7 @@ import json
 import sqlite3
 import time
 from collections.abc import Callable, Iterable
+from contextlib import closing
 from pathlib import Path
 
 from c2nav_engine.errors import InputError
@@ -19,7 +20,8 @@ create table if not exists tasks (
   attempts integer not null default 0,
   lease_until_s real not null default 0,
   row text,
-  error text not null default ''
+  error text not null default '',
+  cost_usd real
 )
 """
 
@@ -27,7 +29,7 @@ create table if not exists tasks (
 class Ledger:
     """The state of every task of a run folder.
 
-    Only the coordinating process writes; a killed one leaves leases that expire.
+    Only the coordinating process writes; a killed one leaves leases that mean nothing any more.
 
     Args:
         path: `RUN/ledger.sqlite`; made when absent.
@@ -38,7 +40,9 @@ class Ledger:
         self._clock = clock
         try:
             self._db = sqlite3.connect(path, isolation_level=None)
-            self._db.execute("pragma journal_mode = wal")
+            # One file and whole commits: run folders lie on network disks too, where a shared
+            # write-ahead log does not work.
+            self._db.execute("pragma journal_mode = delete")
             self._db.execute(_SCHEMA)
         except sqlite3.DatabaseError as error:
             message = f"expected a ledger at {path}, came: {error}; name another --out folder"
@@ -46,7 +50,9 @@ class Ledger:
 
     def add(self, tasks: Iterable[tuple[str, str]]) -> None:
         """Know these (key, name) tasks; those already known keep their state."""
-        self._db.executemany("insert or ignore into tasks (key, name) values (?, ?)", tasks)
+        with self._db:
+            self._db.execute("begin")
+            self._db.executemany("insert or ignore into tasks (key, name) values (?, ?)", tasks)
 
     def missing(self) -> list[str]:
         """Keys that are not done, in the order they were added."""
@@ -61,24 +67,35 @@ class Ledger:
             (self._clock() + seconds, key),
         )
 
-    def finish(self, key: str, row: Row) -> None:
+    def finish(self, key: str, row: Row, *, cost_usd: float | None = None) -> None:
         """The task is done; its row is kept here until the tables are written."""
         self._db.execute(
-            "update tasks set state = 'done', row = ?, error = '' where key = ?",
-            (json.dumps(dict(row)), key),
+            "update tasks set state = 'done', row = ?, error = '', cost_usd = ? where key = ?",
+            (json.dumps(dict(row)), cost_usd, key),
         )
 
-    def fail(self, key: str, error: str, row: Row) -> None:
+    def fail(self, key: str, error: str, row: Row, *, cost_usd: float | None = None) -> None:
         """The task ended as `error`; a resumed run takes it up again."""
         self._db.execute(
-            "update tasks set state = 'failed', row = ?, error = ? where key = ?",
-            (json.dumps(dict(row)), error, key),
+            "update tasks set state = 'failed', row = ?, error = ?, cost_usd = ? where key = ?",
+            (json.dumps(dict(row)), error, cost_usd, key),
         )
 
     def rows(self) -> dict[str, Row]:
         """Rows of finished and failed tasks by key."""
         found = self._db.execute("select key, row from tasks where row is not null order by rowid")
         return {key: json.loads(row) for key, row in found}
+
+    def errors(self) -> dict[str, str]:
+        """Why tasks failed, by name."""
+        found = self._db.execute(
+            "select name, error from tasks where state = 'failed' order by rowid"
+        )
+        return dict(found.fetchall())
+
+    def cost_usd(self) -> float | None:
+        """Known price of all tasks so far; None where none is known."""
+        return self._db.execute("select sum(cost_usd) from tasks").fetchone()[0]
 
     def states(self) -> dict[str, int]:
         """How many tasks are in each state."""
@@ -87,3 +104,9 @@ class Ledger:
     def close(self) -> None:
         """Let go of the file."""
         self._db.close()
+
+
+def states_of(path: Path) -> dict[str, int]:
+    """States of a run's tasks without touching its ledger, also while it runs."""
+    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as db:
+        return dict(db.execute("select state, count(*) from tasks group by state").fetchall())
