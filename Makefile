@@ -1,5 +1,5 @@
 # Two commands: `make run` opens the inspector, `make test` checks everything.
-.PHONY: run setup test check tests bench clean
+.PHONY: run setup test check tests slow bench clean
 
 run: setup  ## open the inspector on a built-in episode
 	.venv/bin/c2nav inspect builtin
@@ -18,7 +18,10 @@ check:  ## style, types, import contracts
 	.venv/bin/lint-imports
 
 tests:
-	.venv/bin/pytest -n 2 --dist loadfile
+	.venv/bin/pytest -n 2 --dist loadfile -m "not slow"
+
+slow:  ## campaigns: many kills, many planted answers
+	.venv/bin/pytest -n 2 -m slow
 
 bench:  ## the benchmark tables of this machine
 	.venv/bin/c2nav bench
