@@ -1,0 +1,55 @@
+"""What lies around a recorded run, where its scene is to be had: mesh, floor, walls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from app.figures.plan import Plan, floor_rings, rings_of
+from app.inspector.scene.cutting import CUT_M
+from app.inspector.scene.section import CELL_M, section_of
+from app.session.story import Story
+from c2nav_engine.errors import NavMeshError, SceneError
+from c2nav_engine.runner.reshell import source_of_record
+from c2nav_engine.runner.worlds import Worlds, WorldsConfig
+from c2nav_engine.world.scene import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """A scene as far as it is to be had.
+
+    Attributes:
+        scene: The mesh; None where it is not to be had.
+        plan: Floor and walls from above.
+        why_not: Why there is no scene, and what to do about it; "" where there is one.
+    """
+
+    scene: Scene | None = None
+    plan: Plan = field(default_factory=Plan)
+    why_not: str = ""
+
+
+def surroundings_of(story: Story, scenes: Path | None) -> Surroundings:
+    """Load the scene of a run and take its floor plan; never raises for a missing scene."""
+    header = story.header
+    try:
+        worlds = Worlds(source_of_record(header, scenes), WorldsConfig(header.profile))
+        world = worlds.of(header.episode.scene_id)
+    except (SceneError, NavMeshError) as error:
+        return Surroundings(why_not=str(error))
+    heights_m = [footstep.pose.position_m[1] for footstep in story.track.footsteps]
+    floor = floor_rings(world.surface.triangles(), heights_m)
+    return Surroundings(world.scene, Plan(floor, _walls(world.scene, heights_m[0] + CUT_M)))
+
+
+def _walls(scene: Scene, height_m: float) -> tuple[tuple[tuple[float, float], ...], ...]:
+    groups = [scene.vertices_m[scene.triangles[part.first : part.stop]] for part in scene.parts]
+    section = section_of(groups, height_m)
+    if section is None:
+        return ()
+    corner = (
+        section.centre_m[0] - section.size_m[0] / 2.0,
+        section.centre_m[1] - section.size_m[1] / 2.0,
+    )
+    return rings_of(section.rgba[:, :, 3] > 0, corner, CELL_M)
