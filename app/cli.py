@@ -26,6 +26,7 @@ COMMANDS = (
     "replay",
     "question",
     "fork",
+    "figure",
     "trace",
     "turning",
 )
