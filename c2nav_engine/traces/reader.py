@@ -16,21 +16,10 @@ from pathlib import Path
 from types import TracebackType
 
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
-from mcap.opcode import Opcode
-from mcap.records import (
-    Attachment,
-    AttachmentIndex,
-    Channel,
-    ChunkIndex,
-    Footer,
-    Message,
-    MessageIndex,
-    Metadata,
-    MetadataIndex,
-    Schema,
-)
+from mcap.records import Attachment, ChunkIndex, Footer, Message, MessageIndex, Metadata
 
 from c2nav_engine.errors import TraceError, UnfinishedTrace
+from c2nav_engine.traces.index import Index
 from c2nav_engine.traces.records import (
     FOOTER_BYTES,
     MAGIC,
@@ -73,7 +62,7 @@ class TraceFile:
         self._size = os.fstat(self._descriptor).st_size
         self._opened: OrderedDict[int, list[Message]] = OrderedDict()
         try:
-            self._index()
+            self._index = self._open()
             self._identify()
         except BaseException:
             self.close()
@@ -81,7 +70,7 @@ class TraceFile:
 
     # ------------------------------------------------------------ opening
 
-    def _index(self) -> None:
+    def _open(self) -> Index:
         if self._read(0, len(MAGIC)) != MAGIC:
             message = f"expected a trace (an MCAP file), but {self.path} begins otherwise"
             raise TraceError(message)
@@ -89,9 +78,9 @@ class TraceFile:
         footer = footer_of(self._read(max(0, self._size - tail_bytes), tail_bytes))
         if footer is None:
             raise UnfinishedTrace(unfinished_words(self.path))
-        self._summary(footer)
+        return self._indexed(footer)
 
-    def _summary(self, footer: Footer) -> None:
+    def _indexed(self, footer: Footer) -> Index:
         end = self._size - FOOTER_BYTES - len(MAGIC)
         start = footer.summary_start
         summary = self._read(start, end - start) if 0 < start <= end else b""
@@ -101,37 +90,10 @@ class TraceFile:
                 "`c2nav trace recover` rebuilds it"
             )
             raise TraceError(message)
-        self._schemas: dict[int, Schema] = {}
-        self._channels: dict[int, Channel] = {}
-        self._chunks: list[ChunkIndex] = []
-        self._attachments: dict[str, AttachmentIndex] = {}
-        self._metadata: dict[str, MetadataIndex] = {}
-        for record in walk(summary, 0):
-            self._remember(record)
-        self._chunks.sort(key=lambda chunk: chunk.chunk_start_offset)
-        self._by_topic: dict[str, list[ChunkIndex]] = {}
-        for chunk in self._chunks:
-            for channel in chunk.message_index_offsets:
-                self._by_topic.setdefault(self._channels[channel].topic, []).append(chunk)
-
-    def _remember(self, record: Record) -> None:
-        if record.opcode == Opcode.SCHEMA:
-            schema = parse(Schema.read, record)
-            self._schemas[schema.id] = schema
-        elif record.opcode == Opcode.CHANNEL:
-            channel = parse(Channel.read, record)
-            self._channels[channel.id] = channel
-        elif record.opcode == Opcode.CHUNK_INDEX:
-            self._chunks.append(parse(ChunkIndex.read, record))
-        elif record.opcode == Opcode.ATTACHMENT_INDEX:
-            attachment = parse(AttachmentIndex.read, record)
-            self._attachments[attachment.name] = attachment
-        elif record.opcode == Opcode.METADATA_INDEX:
-            metadata = parse(MetadataIndex.read, record)
-            self._metadata[metadata.name] = metadata
+        return Index.of(summary)
 
     def _identify(self) -> None:
-        if METADATA not in self._metadata:
+        if METADATA not in self._index.metadata:
             message = f"expected a trace of this program, but {self.path} is some other MCAP file"
             raise TraceError(message)
         version = self.facts.get("schema_version", "")
@@ -167,18 +129,6 @@ class TraceFile:
                 self._opened.popitem(last=False)
         return messages
 
-    def _stored(self, message: Message) -> Stored:
-        channel = self._channels[message.channel_id]
-        schema = self._schemas[channel.schema_id]
-        return Stored(
-            channel.topic,
-            schema.name,
-            schema.data,
-            message.sequence,
-            message.log_time,
-            message.data,
-        )
-
     # ------------------------------------------------------------ what it holds
 
     @property
@@ -204,20 +154,22 @@ class TraceFile:
     @property
     def topics(self) -> tuple[str, ...]:
         """Topics with at least one message."""
-        return tuple(self._by_topic)
+        return tuple(self._index.by_topic)
 
     def metadata(self, name: str) -> dict[str, str]:
         """One metadata record; raises `TraceError` when there is none of that name."""
-        if name not in self._metadata:
-            message = f"{self.path} has no metadata record {name!r}; it has {list(self._metadata)}"
+        if name not in self._index.metadata:
+            message = (
+                f"{self.path} has no metadata record {name!r}; it has {list(self._index.metadata)}"
+            )
             raise TraceError(message)
-        index = self._metadata[name]
+        index = self._index.metadata[name]
         return parse(Metadata.read, self._record(index.offset, index.length)).metadata
 
     @property
     def attachments(self) -> tuple[str, ...]:
         """Names of the attached files."""
-        return tuple(self._attachments)
+        return tuple(self._index.attachments)
 
     def attachment(self, name: str) -> bytes:
         """One attached file's bytes; raises `TraceError` when there is none of that name."""
@@ -225,19 +177,20 @@ class TraceFile:
 
     def attached(self, name: str) -> Attachment:
         """One attached file; raises `TraceError` when there is none of that name."""
-        if name not in self._attachments:
-            message = f"{self.path} has no attachment {name!r}; it has {list(self._attachments)}"
+        if name not in self._index.attachments:
+            message = (
+                f"{self.path} has no attachment {name!r}; it has {list(self._index.attachments)}"
+            )
             raise TraceError(message)
-        index = self._attachments[name]
+        index = self._index.attachments[name]
         return attachment_of(self._record(index.offset, index.length))
 
     def messages(self, *topics: str) -> Iterator[Stored]:
         """Messages of these topics (of all when none is named) by log time and topic rank."""
-        wanted = set(topics or self._by_topic)
-        channels = {key for key, channel in self._channels.items() if channel.topic in wanted}
+        channels = self._index.channels_of(*(topics or self._index.by_topic))
         found = [
-            self._stored(message)
-            for chunk in self._chunks
+            self._index.stored(message)
+            for chunk in self._index.chunks
             if channels.intersection(chunk.message_index_offsets)
             for message in self._messages_in(chunk)
             if message.channel_id in channels
@@ -247,9 +200,9 @@ class TraceFile:
 
     def times_ns(self, topic: str) -> list[int]:
         """Log times of a topic's messages in order, from the index alone."""
-        keys = {key for key, channel in self._channels.items() if channel.topic == topic}
+        keys = self._index.channels_of(topic)
         times_ns: list[int] = []
-        for chunk in self._by_topic.get(topic, []):
+        for chunk in self._index.by_topic.get(topic, []):
             for key in keys.intersection(chunk.message_index_offsets):
                 offset = chunk.message_index_offsets[key]
                 length = PREFIX.unpack(self._read(offset, PREFIX.size))[1] + PREFIX.size
@@ -259,13 +212,13 @@ class TraceFile:
 
     def at(self, topic: str, log_time_ns: int) -> list[Stored]:
         """The messages of a topic with exactly this log time; reads one chunk."""
-        chunks = self._by_topic.get(topic, [])
+        chunks = self._index.by_topic.get(topic, [])
         place = bisect_right(chunks, log_time_ns, key=lambda chunk: chunk.message_start_time)
         if place == 0:
             return []
         return [
             stored
-            for stored in map(self._stored, self._messages_in(chunks[place - 1]))
+            for stored in map(self._index.stored, self._messages_in(chunks[place - 1]))
             if stored.topic == topic and stored.log_time_ns == log_time_ns
         ]
 

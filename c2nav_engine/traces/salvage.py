@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Message, Metadata, Schema
 
 from c2nav_engine.errors import TraceError
+from c2nav_engine.traces.index import Index
 from c2nav_engine.traces.records import (
     MAGIC,
     Record,
@@ -47,9 +49,7 @@ def salvage(data: bytes) -> Salvaged:
     """Read a file's bytes as far as they go; damage costs only the record it hit."""
     reading = _Reading()
     for record in walk(data):
-        # A finished file repeats its channels at the end: they outlive the chunk that held them.
-        if record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-            reading.name(record)
+        reading.learn(record)
     for record in walk(data):
         reading.found.end = record.end
         try:
@@ -79,17 +79,15 @@ def unfinished_words(path: Path) -> str:
 @dataclass(slots=True)
 class _Reading:
     found: Salvaged = field(default_factory=Salvaged)
-    schemas: dict[int, Schema] = field(default_factory=dict[int, Schema])
-    channels: dict[int, Channel] = field(default_factory=dict[int, Channel])
+    index: Index = field(default_factory=Index)
 
-    def name(self, record: Record) -> None:
-        """Learn a schema or a channel of the index."""
-        if record.opcode == Opcode.SCHEMA:
-            schema = parse(Schema.read, record)
-            self.schemas[schema.id] = schema
-        else:
-            channel = parse(Channel.read, record)
-            self.channels[channel.id] = channel
+    def learn(self, record: Record) -> None:
+        """A finished file repeats its channels at the end: they outlive the chunk that had them."""
+        with suppress(TraceError):
+            if record.opcode == Opcode.SCHEMA:
+                self.index.keep(parse(Schema.read, record))
+            elif record.opcode == Opcode.CHANNEL:
+                self.index.keep(parse(Channel.read, record))
 
     def take(self, record: Record) -> None:
         """Read one record of the data section."""
@@ -105,21 +103,7 @@ class _Reading:
 
     def _chunk(self, record: Record) -> None:
         for inner in chunk_records(record):
-            if isinstance(inner, Schema):
-                self.schemas[inner.id] = inner
-            elif isinstance(inner, Channel):
-                self.channels[inner.id] = inner
-            elif inner.channel_id in self.channels:
-                self.found.messages.append(self._stored(inner))
-
-    def _stored(self, message: Message) -> Stored:
-        channel = self.channels[message.channel_id]
-        schema = self.schemas[channel.schema_id]
-        return Stored(
-            channel.topic,
-            schema.name,
-            schema.data,
-            message.sequence,
-            message.log_time,
-            message.data,
-        )
+            if not isinstance(inner, Message):
+                self.index.keep(inner)
+            elif self.index.knows(inner):
+                self.found.messages.append(self.index.stored(inner))

@@ -29,10 +29,23 @@ def test_any_flipped_byte_is_found(trace: Path) -> None:
     data = trace.read_bytes()
     flipped = trace.with_name("flipped.mcap")
     # A prime stride meets every kind of record; the ends hold the magic, footer and index.
-    places = {*range(0, len(data), 479), *range(60), *range(len(data) - 60, len(data))}
+    places = {*range(0, len(data), 997), *range(60), *range(len(data) - 60, len(data))}
     for place in sorted(places):
         flipped.write_bytes(data[:place] + bytes([data[place] ^ 0x10]) + data[place + 1 :])
         assert check(flipped), f"the flip at byte {place} of {len(data)} went unseen"
+
+
+def test_recovering_any_damage_gives_a_trace_or_says_why(trace: Path) -> None:
+    data = trace.read_bytes()
+    flipped, out = trace.with_name("flipped.mcap"), trace.with_name("out.mcap")
+    index_at = len(data) - 17_000  # a stride through all of it, a finer one through the index
+    for place in [*range(0, index_at, 9973), *range(index_at, len(data), 1511)]:
+        flipped.write_bytes(data[:place] + bytes([data[place] ^ 0x81]) + data[place + 1 :])
+        try:
+            recover(flipped, out)
+        except TraceError:
+            continue
+        read_trace(out)
 
 
 def test_reading_a_damaged_trace_says_so(trace: Path) -> None:
