@@ -73,15 +73,18 @@ def named_things(scene: Scene) -> list[NamedThing]:
 
 
 def words_of_part(name: str) -> str:
-    """ "" or plain words: `Refrigerator_01_001/…` is "refrigerator", `study/teal globe` itself."""
-    text = name.split("/")[-1 if " " in name.split("/")[-1] or _is_room(name) else 0]
-    text = re.sub(
-        r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", re.sub(r"[_.\-\d]+", " ", text)
-    )
+    """Plain words: "refrigerator" of `Refrigerator_01_001/…`, itself of "study/teal globe".
+
+    Empty for structure ("wall/study") and for names that mean nothing ("mesh0").
+    """
+    first, _, rest = name.partition("/")
+    text = rest if _is_room(name) else first
+    text = re.sub(r"[_.\-\d]+", " ", text)
+    text = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", text)
     words = [word for word in text.lower().split() if len(word) > 1]
-    if not words or not _STRUCTURE.isdisjoint([*words, *name.split("/")[0].lower().split()]):
+    if first in _STRUCTURE or not _STRUCTURE.isdisjoint(words) or len(words) > 6:
         return ""
-    return " ".join(words) if len(words) <= 6 else ""
+    return " ".join(words)
 
 
 def _is_room(name: str) -> bool:

@@ -108,8 +108,8 @@ def _told_routes(
 
 def _wanted(route: Route) -> float:
     """Probability of keeping a route: short ones through two rooms are plentiful and dull."""
-    by_rooms = {2: 0.3, 3: 0.6}.get(len(route.visits), 1.0)
-    return by_rooms * min(1.0, (route.geodesic_m - 2.0) / 7.0)
+    by_rooms = {2: 0.2, 3: 0.5}.get(len(route.visits), 1.0)
+    return by_rooms * min(1.0, (route.geodesic_m - 3.0) / 8.0)
 
 
 def _start(route: Route, random: np.random.Generator) -> Pose:

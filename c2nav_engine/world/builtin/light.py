@@ -39,17 +39,19 @@ def baked(
     directions = _directions()
     frames = _frames(normals)
     rays = np.empty((len(vertices_m), _RAYS, 6), np.float32)
-    rays[:, :, :3] = (vertices_m + 0.012 * normals)[:, None, :]
+    # From just inside the face: an edge lies in the plane of the face it meets.
+    origins = vertices_m + 0.012 * normals + 0.04 * _inward(vertices_m, triangles, normals)
+    rays[:, :, :3] = origins[:, None, :]
     rays[:, :, 3:] = np.einsum("kc,vcx->vkx", directions, frames)
     distance, hit = _cast(vertices_m, triangles[casts], rays)
     glow = glow[casts].astype(np.float64)
     open_share: np.ndarray = np.clip(distance / _REACH_M, 0.0, 1.0) ** 0.7
-    shining: np.ndarray = glow[hit] * (hit >= 0)
+    shining: np.ndarray = np.take(glow, hit) * (hit >= 0)
     # Windows far away still light a room, only less.
-    bonus = 0.16 * np.minimum(shining / (0.4 + 0.25 * distance), 2.0)
-    light = np.minimum(open_share + bonus, 1.6).mean(axis=1)
-    grey = np.clip(_DARKEST + (1.0 - _DARKEST) * light * 1.2, 0.0, 1.0)
-    levels = np.minimum(np.round(grey * 255.0 / _LEVEL) * _LEVEL, 255).astype(np.uint8)
+    bonus = 0.16 * np.clip(shining / (0.4 + 0.25 * distance), 0.0, 2.0)
+    light: np.ndarray = np.clip(open_share + bonus, 0.0, 1.6).mean(axis=1)
+    grey: np.ndarray = np.clip(_DARKEST + (1.0 - _DARKEST) * light * 1.2, 0.0, 1.0)
+    levels: np.ndarray = np.clip(np.round(grey * 255.0 / _LEVEL) * _LEVEL, 0, 255).astype(np.uint8)
     return np.stack([levels, levels, levels, np.full_like(levels, 255)], axis=1)
 
 
@@ -66,6 +68,26 @@ def _normals(
         axis=1,
     )
     return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+
+
+def _inward(
+    vertices_m: Float[np.ndarray, "vertices 3"],
+    triangles: Int[np.ndarray, "triangles 3"],
+    normals: Float[np.ndarray, "vertices 3"],
+) -> Float[np.ndarray, "vertices 3"]:
+    """Direction along the surface from each vertex into it; 0 where the surface surrounds it."""
+    corners = vertices_m[triangles]
+    away = corners.mean(axis=1, keepdims=True) - corners
+    sums = np.stack(
+        [
+            np.bincount(triangles.reshape(-1), away[:, :, k].reshape(-1), len(vertices_m))
+            for k in range(3)
+        ],
+        axis=1,
+    )
+    # Of a round body only the part along its surface counts: the rest leads inside.
+    sums -= (sums * normals).sum(axis=1, keepdims=True) * normals
+    return sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-2)
 
 
 def _directions() -> Float[np.ndarray, "rays 3"]:

@@ -83,6 +83,7 @@ def sheet(
     sides: tuple[Vector, Vector],
     *,
     parts: tuple[int, int] = (1, 1),
+    levels: Sequence[float] = (),
     whole: bool = False,
 ) -> Solid:
     """A parallelogram, facing along first side × second side.
@@ -92,11 +93,13 @@ def sheet(
         corner: Where both sides start.
         sides: First (the picture's right) and second (the picture's up) side.
         parts: How often each side is cut, for lighting.
+        levels: Shares of the second side where it is cut instead, 0 and 1 included.
         whole: Whether one copy of the texture covers all of it.
     """
     across, up = (np.array(side) for side in sides)
-    columns, rows = parts
-    s, t = np.meshgrid(np.linspace(0, 1, columns + 1), np.linspace(0, 1, rows + 1))
+    columns, rows = parts[0], len(levels) - 1 if levels else parts[1]
+    cuts = np.array(levels) if levels else np.linspace(0, 1, rows + 1)
+    s, t = np.meshgrid(np.linspace(0, 1, columns + 1), cuts)
     vertices = np.array(corner) + s.reshape(-1, 1) * across + t.reshape(-1, 1) * up
     triangles = _grid_triangles(columns, rows)
     uvs = np.stack([s.reshape(-1), t.reshape(-1)], axis=1)[triangles] if whole else None
@@ -140,7 +143,7 @@ def cushion(
     """A box with rounded edges that stands centred on `base`."""
     half = np.array(size) / 2.0
     round_m = min(radius, float(half.min()) * 0.98)
-    axis_u = (0, 2, 2, 0, 0, 0)
+    axis_u = (0, 0, 2, 2, 0, 0)
     vertices: list[np.ndarray] = []
     for face, first in enumerate(axis_u):
         corners = _BOX_CORNERS[4 * face : 4 * face + 4] * half

@@ -94,9 +94,8 @@ def aquarium() -> Texture:
     row, column = np.mgrid[0:128, 0:128] / 128
     picture = blend(_plain((110, 196, 214), 128), _plain((28, 92, 132), 128), row)
     weeds = np.abs(np.sin(column * 22 + 0.8 * np.sin(row * 9))) < 0.22
-    picture = blend(
-        picture, _plain((48, 120, 70), 128), weeds & (row > 0.45 + 0.2 * np.sin(column * 9))
-    )
+    weeds &= row > 0.45 + 0.2 * np.sin(column * 9)
+    picture = blend(picture, _plain((48, 120, 70), 128), weeds.astype(float))
     for y, x in ((0.3, 0.25), (0.45, 0.7), (0.6, 0.42)):
         fish = ((row - y) / 0.045) ** 2 + ((column - x) / 0.08) ** 2 < 1
         picture = blend(picture, _plain((240, 140, 52), 128), fish.astype(float))

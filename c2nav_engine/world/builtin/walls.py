@@ -18,7 +18,7 @@ from c2nav_engine.world.builtin.plan import (
     Wall,
 )
 
-_PATCH_M = 0.6
+_PATCH_M, _BAND_M = 0.6, 0.54
 """Walls are cut into patches of about this size so that light can vary over them."""
 _HALF = WALL_M / 2
 _END = _HALF - 0.003
@@ -73,12 +73,10 @@ def _face(wall: Wall, look: Look, span: tuple[float, float, float, float], *, si
     start, end = (low, high) if forward else (high, low)
     x, z = wall.point(start, side * _HALF)
     dx, dz = (end - start, 0.0) if wall.axis == "x" else (0.0, end - start)
-    parts = (
-        max(1, math.ceil((high - low) / _PATCH_M)),
-        max(1, math.ceil((top - bottom) / _PATCH_M)),
-    )
+    parts = (max(1, math.ceil((high - low) / _PATCH_M)), 1)
     corner = (x, _base(wall) + bottom, z)
-    return sheet(look, corner, ((dx, 0.0, dz), (0.0, top - bottom, 0.0)), parts=parts)
+    sides = ((dx, 0.0, dz), (0.0, top - bottom, 0.0))
+    return sheet(look, corner, sides, parts=parts, levels=_levels(bottom, top))
 
 
 def _faces(wall: Wall, finish: Finish) -> Iterator[Solid]:
@@ -88,6 +86,13 @@ def _faces(wall: Wall, finish: Finish) -> Iterator[Solid]:
         top = STOREY_M if room in {OUTSIDE, STAIRS} else CEILING_M
         for span in _spans(wall, top):
             yield _face(wall, look, span, side=side)
+
+
+def _levels(bottom: float, top: float) -> list[float]:
+    """Shares of a patch's height at heights that all patches share: light runs on between them."""
+    cuts = [level * _BAND_M for level in range(math.ceil(STOREY_M / _BAND_M))]
+    edges = [bottom, *(cut for cut in cuts if bottom + 0.02 < cut < top - 0.02), top]
+    return [(edge - bottom) / (top - bottom) for edge in edges]
 
 
 def _spans(wall: Wall, top: float) -> Iterator[tuple[float, float, float, float]]:

@@ -25,7 +25,7 @@ _LONG_M = 5.5
 """A way through one room longer than this is told in two legs where it can be."""
 _LAST_M = 1.6
 """Length of the last leg where the way through the last room is long enough to be split."""
-_FEWEST_WORDS, _MOST_WORDS = 14, 32
+_FEWEST_WORDS, _MOST_WORDS = 14, 34
 _WAYS: dict[str, tuple[str, ...]] = {
     "hallway": ("down", "along", "down"),
     "landing": ("along", "across"),
@@ -143,7 +143,7 @@ class _Teller:
     def _first(self, visit: Visit, following: Visit, heading_rad: float) -> Leg:
         away = math.remainder(self._route.trail.bearing_rad(0.0, 1.0) - heading_rad, math.tau)
         if visit.room.kind in _WAYS and visit.length_m > 2.5:
-            text = self._along(visit, following)
+            text = self._along(visit, following).replace("continue", "go", 1)
         else:
             text = self._out_of(visit, following)
         if abs(away) > math.radians(140.0):

@@ -37,8 +37,7 @@ def wardrobe(tones: Tones) -> list[Solid]:
 
 def dresser(tones: Tones) -> list[Solid]:
     """Six coloured drawers, flowers on top."""
-    size = (1.2, 0.82, 0.46)
-    solids = [box(wood(tones.wood), size, (0, 0.04, 0))]
+    solids = [box(wood(tones.wood), (1.2, 0.86, 0.46))]
     solids.append(cushion(wood(tones.wood), (1.26, 0.035, 0.5), (0, 0.86, 0), radius=0.012))
     solids += _fronts(lacquer(tones.colour), (2, 3), (1.2, 0.86, 0.46))
     return solids + [solid.at(-0.35, 0.895, 0) for solid in vase_of_flowers(tones.colour)]
