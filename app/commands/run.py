@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import signal
 import sys
+from collections.abc import Generator
+from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 from typing import Annotated
@@ -81,9 +83,7 @@ def run(
     )
     spec = spec_of(setting, variants=variants, episodes=episodes, seeds=seeds)
     chosen = executor_for(executor, setting, workers=workers, options=key_values(executor_opt))
-    # A scheduler that takes the machine back asks politely first: as good as an interrupt.
-    signal.signal(signal.SIGTERM, _interrupt)
-    with progress_bar(quiet=json) as tell:
+    with _polite(), progress_bar(quiet=json) as tell:
         result = run_batch(spec, out, chosen, resume=resume, progress=tell)
     if json:
         print_json({"run": str(out), **summarise(result.rows)})
@@ -137,5 +137,16 @@ def _code(result: BatchResult) -> int:
     return 1 if any(row["outcome"] == "error" for row in result.rows) else 0
 
 
-def _interrupt(number: int, frame: FrameType | None) -> None:
-    raise KeyboardInterrupt
+@contextmanager
+def _polite() -> Generator[None]:
+    """A scheduler that takes the machine back asks first (SIGTERM): as good as an interrupt."""
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        del number, frame
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

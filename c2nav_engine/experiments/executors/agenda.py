@@ -19,6 +19,9 @@ Worker = int
 class Agenda:
     """Tasks still to be given out, and those under way by worker.
 
+    A task that was under way when its worker died is suspect, and is given out alone from then
+    on: whatever kills workers takes no bystander down twice.
+
     Args:
         tasks: What is to be run.
         attempts: Workers that may be lost to one task.
@@ -29,6 +32,7 @@ class Agenda:
         self._waiting: dict[str, list[Task]] = {}
         for task in tasks:
             self._waiting.setdefault(task.scene_id, []).append(task)
+        self._suspect: list[Task] = []
         self._under_way: dict[Worker, dict[str, Task]] = {}
         self._scene_of: dict[Worker, str] = {}
         self._tries: dict[str, int] = {}
@@ -37,7 +41,7 @@ class Agenda:
     @property
     def open(self) -> bool:
         """Whether anything waits or is under way."""
-        return bool(self._waiting) or any(self._under_way.values())
+        return bool(self._waiting or self._suspect) or any(self._under_way.values())
 
     def under_way(self, worker: Worker) -> int:
         """Tasks that the worker is at."""
@@ -45,14 +49,22 @@ class Agenda:
 
     def next(self, worker: Worker) -> Task | None:
         """The worker's next task: of its own scene, else of the one that needs it most."""
+        at = self._under_way.setdefault(worker, {})
+        if any(self._tries[key] > 1 for key in at):
+            return None
+        if self._suspect and not at:
+            return self._give(worker, self._suspect.pop(0))
         scene = self._scene_for(worker)
         if scene is None:
             return None
         task = self._waiting[scene].pop(0)
         if not self._waiting[scene]:
             del self._waiting[scene]
-        self._scene_of[worker] = scene
-        self._under_way.setdefault(worker, {})[task.key] = task
+        return self._give(worker, task)
+
+    def _give(self, worker: Worker, task: Task) -> Task:
+        self._scene_of[worker] = task.scene_id
+        self._under_way[worker][task.key] = task
         self._tries[task.key] = self._tries.get(task.key, 0) + 1
         return task
 
@@ -85,7 +97,7 @@ class Agenda:
             if self._tries[task.key] >= self._attempts:
                 given_up.append(lost(task, self._attempts))
             else:
-                self._waiting.setdefault(task.scene_id, []).insert(0, task)
+                self._suspect.append(task)
         self._scene_of.pop(worker, None)
         return given_up
 

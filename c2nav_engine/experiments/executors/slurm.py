@@ -22,6 +22,8 @@ TASKS_A_JOB = 25
 """Most tasks of one job [C]: a lost job costs no more than its unfinished ones."""
 GRACE_S = 3.0
 """How long jobs of a dead coordinator get to notice that they are no longer wanted."""
+GOODBYE_S = 10.0
+"""How long submitit's own processes may take to end."""
 _USUAL: Mapping[str, str | int] = {"timeout_min": 240, "cpus_per_task": 1, "mem_gb": 8}
 
 
@@ -79,9 +81,17 @@ class SlurmExecutor:
                 yield from self._collect(agenda, inbox)
         finally:
             inbox.close()
-            for job in self._jobs.values():
+            self._end()
+
+    def _end(self) -> None:
+        """Cancel what still runs; own processes notice by themselves and get the time for it."""
+        until_s = time.monotonic() + (GOODBYE_S if self._cluster == "local" else 0.0)
+        for job in self._jobs.values():
+            while not job.done() and time.monotonic() < until_s:
+                time.sleep(0.05)
+            if not job.done():
                 job.cancel(check=False)
-            self._jobs.clear()
+        self._jobs.clear()
 
     def _submitting(self, folder: Path) -> Any:
         executor = _submitit().AutoExecutor(folder=folder / "jobs", cluster=self._cluster)
