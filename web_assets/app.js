@@ -14,7 +14,9 @@ document.title = "C²Nav inspector";
 const top = h("div", { id: "c2-top" });
 const banner = h("div", { id: "c2-banner", role: "status" });
 const tabs = h("div", { id: "c2-tabs" });
-const pills = h("div", { id: "c2-pills" }, banner, tabs);
+const ego = h("div", { hidden: true }, "rendered here, not what the robot saw");
+const seen = h("div", { hidden: true });
+const pills = h("div", { id: "c2-pills" }, banner, seen, ego, tabs);
 top.append(document.createElement("route-strip"), pills, document.createElement("wait-card"));
 const lower = h("div", { id: "c2-low" }, document.createElement("timeline-bar"));
 const toasts = h("div", { id: "c2-toasts", role: "status", "aria-live": "polite" });
@@ -48,6 +50,14 @@ subscribe((now, changed) => {
   if (changed.has("branch")) {
     banner.textContent = now.branch.label;
     banner.classList.toggle("differs", now.branch.differs);
+  }
+  if (changed.has("view")) {
+    ego.hidden = now.view.camera !== "ego";
+  }
+  if (changed.has("place") || changed.has("glimpse")) {
+    const age = now.glimpse && !now.place.at_decision ? now.place.step - now.glimpse.step : 0;
+    seen.hidden = !age;
+    seen.textContent = age ? `view of ${age} ${age === 1 ? "step" : "steps"} ago` : "";
   }
   if (changed.has("pages") || changed.has("driver")) {
     const driver = now.driver && now.driver !== tab ? ` · ${now.driver} is driving` : "";

@@ -147,7 +147,7 @@ class RankStrip extends HTMLElement {
       style: card.sha ? `--ratio:${card.width / card.height}` : null,
       onpointerenter: () => card.feasible && this.hover(card.key),
       onpointerleave: () => this.hover(""),
-      onpointerdown: (event) => card.feasible && decision.asked && this.begin(event, card.key),
+      onpointerdown: (event) => this.begin(event, card),
       onkeydown: (event) => this.key(event, card),
     });
     node.append(h("span", { class: "letter" }, card.letter || "–"));
@@ -241,12 +241,14 @@ class RankStrip extends HTMLElement {
 
   // ---------------------------------------------------------------- dragging
 
-  begin(event, key) {
+  begin(event, card) {
     if (event.button !== 0) return;
     if (event.shiftKey) {
-      this.ask(event, key);
+      this.ask(event, card);
       return;
     }
+    if (!card.feasible || !this.state.decision.asked) return;
+    const key = card.key;
     const node = event.currentTarget;
     const start = { x: event.clientX, y: event.clientY };
     const move = (next) => {
@@ -274,8 +276,7 @@ class RankStrip extends HTMLElement {
   }
 
   /** Shift and click: where else was this seen? */
-  ask(event, key) {
-    const card = this.state.decision.cards.find((one) => one.key === key);
+  ask(event, card) {
     const box = event.currentTarget.querySelector(".picture")?.getBoundingClientRect();
     if (!box || event.clientY > box.bottom) return;
     const column = (event.clientX - box.left) / box.width;

@@ -40,6 +40,7 @@ const GROUPS = [
     "See",
     [
       ["Z", "hold: pictures at twice the size"],
+      ["Shift click", "on a picture: where else was this in view"],
       ["G", "goal"],
       ["V", "reveal"],
       ["Ctrl K", "command palette"],

@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import gzip
+import http.client
 
-import httpx
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -42,10 +42,16 @@ class ShellPage:
 
     async def fetch(self) -> None:
         """Fetch viser's page once and add our tags."""
-        async with httpx.AsyncClient(trust_env=False, timeout=30.0) as client:
-            answer = await client.get(f"http://127.0.0.1:{self._port}/")
-        self._page = with_tags(answer.content)
+        self._page = with_tags(await asyncio.to_thread(self._fetched))
         self._packed = await asyncio.to_thread(gzip.compress, self._page, 6)
+
+    def _fetched(self) -> bytes:
+        connection = http.client.HTTPConnection("127.0.0.1", self._port, timeout=30.0)
+        try:
+            connection.request("GET", "/")
+            return connection.getresponse().read()
+        finally:
+            connection.close()
 
     def router(self) -> APIRouter:
         """The page and its websocket, both at the root."""

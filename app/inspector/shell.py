@@ -19,6 +19,7 @@ from app.inspector.panels import (
     review,
     run,
     sketch,
+    view,
 )
 from app.inspector.panels.protocol import Build, Update
 from app.inspector.scene.body import Body
@@ -26,6 +27,7 @@ from app.inspector.scene.cameras import Cameras
 from app.inspector.scene.fan import Fan
 from app.inspector.scene.goal import Goal
 from app.inspector.scene.layer import Layer
+from app.inspector.scene.lookback import LookBack
 from app.inspector.scene.mesh import Mesh
 from app.inspector.scene.pin import Pin
 from app.inspector.scene.trajectory import Trajectory
@@ -79,7 +81,6 @@ class Shell:
     def _dress(self) -> None:
         gui, scene = self._server.gui, self._server.scene
         gui.configure_theme(show_logo=False, show_share_button=False, brand_color=_BLUE)
-        gui.set_panel_label("Scene")
         scene.set_up_direction("+y")
         # Software WebGL has no time for reflections or shadows, and a plan needs neither.
         scene.configure_environment_map(hdri=None)
@@ -112,8 +113,10 @@ class Shell:
         )
         right.dock_right()
         right.set_width(RIGHT_PX)
+        self._updates.append(view.build(gui, self._session.dispatch))
+        gui.set_panel_label("Map")
         gui.main_panel.float(x=-12, y=-12)
-        gui.main_panel.set_width(200)
+        gui.main_panel.set_width(220)
         gui.main_panel.minimize()
         add_palette(gui, self._session.dispatch)
 
@@ -129,6 +132,7 @@ class Shell:
             Body(scene),
             Fan(scene, self._session.dispatch),
             Goal(scene),
+            LookBack(scene),
             Pin(scene, self._session.dispatch),
             self._cameras,
             Mesh(scene, lambda: self._session.scene),

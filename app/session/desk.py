@@ -31,6 +31,15 @@ Message = Callable[["Desk"], None]
 
 
 @dataclass(frozen=True, slots=True)
+class Errand:
+    """A question that is with the ranker: late answers are told by it."""
+
+    generation: int
+    branch_id: str
+    decision: int
+
+
+@dataclass(frozen=True, slots=True)
 class Hands:
     """What a desk may use of the world around it.
 
@@ -56,6 +65,7 @@ class Desk:
         self.stories: dict[str, Story] = {}
         self.runs: dict[str, Run] = {}
         self.asked: set[str] = set()
+        self.out: set[Errand] = set()
         self.scene: Scene | None = None
         self.sight: Sight | None = None
         self.allowed = not opened.sends_to

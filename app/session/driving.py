@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from app.session.branches import Branch, Origin, fork_estimate, median_query_s
-from app.session.desk import Desk, Message
+from app.session.desk import Desk, Errand, Message
 from app.session.draft import Draft, outcome_of
 from app.session.opened import Run
 from app.session.snapshot import Asking, ForkOffer
@@ -17,15 +15,6 @@ from c2nav_engine.runner.exchange import Override
 
 HUMAN = "human"
 """A run whose ranker is the person at the page: nothing is ever proposed."""
-
-
-@dataclass(frozen=True, slots=True)
-class Errand:
-    """A question on its way: late answers are told by it."""
-
-    generation: int
-    branch_id: str
-    decision: int
 
 
 def settle(desk: Desk, branch_id: str) -> None:
@@ -65,6 +54,8 @@ def ask(desk: Desk, branch_id: str) -> None:
     run, waiting = desk.runs.get(branch_id), desk.waiting(branch_id)
     if run is None or waiting is None or desk.snapshot.asking or branch_id in desk.asked:
         return
+    if branch_id in desk.snapshot.proposals:
+        return
     if run.header.ranker == HUMAN:
         return
     if not desk.allowed:
@@ -81,6 +72,9 @@ def ask(desk: Desk, branch_id: str) -> None:
         )
     )
     errand = Errand(desk.generation, branch_id, number)
+    if errand in desk.out:
+        return  # cancelled, but still with the model: its answer counts if it comes in time
+    desk.out.add(errand)
 
     def task() -> Message:
         try:
@@ -101,6 +95,7 @@ def _expected(question: Question) -> int:
 
 def failed(desk: Desk, errand: Errand, problem: str) -> None:
     """The ranker cannot go on: a person may answer, or ask again."""
+    desk.out.discard(errand)
     if errand.generation != desk.generation:
         return
     desk.change(asking=None, playing="")
@@ -110,12 +105,14 @@ def failed(desk: Desk, errand: Errand, problem: str) -> None:
 
 
 def answered(desk: Desk, errand: Errand, ranked: Ranked) -> None:
-    """The ranker's answer came."""
+    """The ranker's answer came; it is too late once a person has answered."""
+    desk.out.discard(errand)
     if errand.generation != desk.generation:
         return
     branch_id = errand.branch_id
+    if desk.snapshot.asking is not None and desk.snapshot.asking.decision == errand.decision:
+        desk.change(asking=None)
     desk.asked.discard(branch_id)
-    desk.change(asking=None)
     pending = desk.stories[branch_id].pending
     if pending is None or pending.number != errand.decision:
         return
@@ -229,7 +226,8 @@ def forked(desk: Desk, generation: int, origin: tuple[str, int], run: Run) -> No
 
 
 def cancel(desk: Desk) -> None:
-    """Stop waiting: a person may answer; the late answer is still recorded if it comes first."""
+    """Stop waiting: a person may answer at once; a late answer counts while none was committed."""
+    desk.asked.discard(desk.snapshot.branch.branch_id)
     desk.change(asking=None, playing="")
     desk.commit_when_answered = False
 

@@ -87,9 +87,8 @@ def _commit(desk: Desk, command: c.Commit) -> None:
     if desk.at_frontier and desk.run is not None:
         if desk.snapshot.draft.empty:
             driving.commit_proposal(desk, branch_id)
-        elif branch_id in desk.asked:
-            desk.say("The model still holds this question; your ranking waits for it")
         else:
+            driving.cancel(desk)
             driving.commit(desk, branch_id, driving.override_of(desk, command.why))
     elif desk.snapshot.draft.empty:
         moving.by_decision(desk, 1)

@@ -34,6 +34,7 @@ def state_json(snapshot: Snapshot) -> Json:
             "stop": snapshot.stop,
             "stops": len(snapshot.story.stops),
         },
+        "glimpse": _glimpse(snapshot),
         "branch": _branch(snapshot),
         "branches": [
             {"id": b.branch_id, "origin": b.origin, "fork": b.fork_decision, "parent": b.parent}
@@ -84,6 +85,15 @@ def _episode(snapshot: Snapshot, decision: Decision | None) -> Json:
         "privileged": header.privileged,
         "seed": header.seed,
     }
+
+
+def _glimpse(snapshot: Snapshot) -> Json | None:
+    """The newest recorded view here, for steps between decisions."""
+    glimpse = snapshot.story.track.glimpse_at(snapshot.here.step)
+    if glimpse is None:
+        return None
+    front = min(glimpse.seen.views, key=lambda view: abs(view.offset_rad))
+    return {"step": glimpse.step, "sha": front.picture.sha256}
 
 
 def _branch(snapshot: Snapshot) -> Json:

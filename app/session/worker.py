@@ -11,7 +11,6 @@ import queue
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 
 from app.session import driving, moving
 from app.session.commands import Command
@@ -40,7 +39,6 @@ class Session:
         self.album = Album()
         self._clock = clock
         self._inbox: queue.Queue[Command | Message | None] = queue.Queue()
-        self._threads = ThreadPoolExecutor(max_workers=4, thread_name_prefix="c2nav-task")
         self._subscribers: list[Subscriber] = []
         self._closing = threading.Event()
         self._desk = Desk(opened, self.album, Hands(self._background, clock))
@@ -68,7 +66,6 @@ class Session:
         self._inbox.put(None)
         if self._worker.is_alive():
             self._worker.join(timeout=5.0)
-        self._threads.shutdown(wait=False, cancel_futures=True)
         for run in self._desk.runs.values():
             run.close()
 
@@ -129,7 +126,10 @@ class Session:
             subscriber(self._published)
 
     def _background(self, task: Callable[[], Message]) -> None:
-        self._threads.submit(lambda: self._inbox.put(self._outcome(task)))
+        # Daemon threads: a model that never answers must not keep the program from ending.
+        threading.Thread(
+            target=lambda: self._inbox.put(self._outcome(task)), name="c2nav-task", daemon=True
+        ).start()
 
     @staticmethod
     def _outcome(task: Callable[[], Message]) -> Message:

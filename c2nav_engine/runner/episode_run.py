@@ -129,11 +129,14 @@ class EpisodeRun:
                 self._parts.before_ask(request, self.exchanges)
             start_s = self._clock()
             try:
-                self._proposal = self._parts.ranker.rank(request.question)
+                ranked = self._parts.ranker.rank(request.question)
             except RankerUnavailable as error:
                 self.end(EpisodeOutcome.ERROR, str(error))
                 raise
-            self._proposal_s = self._clock() - start_s
+            if self.pending is not request:
+                # A person answered meanwhile: an answer that comes too late is no proposal.
+                return ranked
+            self._proposal, self._proposal_s = ranked, self._clock() - start_s
         return self._proposal
 
     def commit(self, override: Override | None = None) -> Exchange:

@@ -188,6 +188,29 @@ def test_the_worker_is_never_held_up_by_a_model():
         session.close()
 
 
+def test_after_a_cancel_a_person_answers_at_once_and_the_late_answer_is_dropped():
+    gate = threading.Event()
+    session = Session(stage.opened_live(gate=gate))
+    watched = Watched(session)
+    try:
+        watched.until(lambda s: s.asking is not None)
+        watched.do(c.Cancel())
+        watched.until(lambda s: s.asking is None)
+        watched.do(c.Arrange(tiers=(("left",), ("front",))))
+        watched.do(c.Commit())
+        snapshot = watched.until(lambda s: len(s.story.decisions) == 2)
+        made = snapshot.story.decisions[0]
+        assert made.override is not None
+        assert made.ranked is None
+        gate.set()
+        ranked = watched.until(proposed(1)).proposal
+        assert ranked is not None
+        assert ranked.queries[0].prompt.question == snapshot.story.decisions[1].question
+    finally:
+        gate.set()
+        session.close()
+
+
 def test_pictures_leave_the_machine_only_after_a_yes():
     session = Session(stage.opened_live(sends_to="models.example"))
     watched = Watched(session)

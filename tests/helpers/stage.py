@@ -314,11 +314,15 @@ class PlayRun:
 
     def propose(self) -> Ranked:
         assert isinstance(self.pending, Ask)
+        request = self.pending
         if self._proposal is None:
             time.sleep(self.delay_s)
             if self.gate is not None:
                 assert self.gate.wait(60.0)
-            self._proposal = scripted_answer(self.pending.question)
+            ranked = scripted_answer(request.question)
+            if self.pending is not request:
+                return ranked
+            self._proposal = ranked
         return self._proposal
 
     def advance(self) -> Exchange:

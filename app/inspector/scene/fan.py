@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import math
 
-import cv2
-import numpy as np
 import viser
 
 from app.inspector.panels.protocol import Dispatch
 from app.inspector.scene import frames
 from app.inspector.scene.colours import BLUE, GREY, SLATE, Rgb
 from app.inspector.scene.layer import Group
+from app.inspector.scene.thumbnails import pixels
 from app.session import commands as c
 from app.session.cards import ranks_of, said_of
 from app.session.decisions import Decision
 from app.session.snapshot import Snapshot
-from c2nav_engine.contract.question import Picture, Slot
+from c2nav_engine.contract.question import Slot
 from c2nav_engine.geometry import Point, Pose
 
 _SCALE_M = 0.95
@@ -65,13 +64,15 @@ class Fan:
             scale = _GLANCE_SCALE_M if glance else _SCALE_M
             frustum = self._scene.add_camera_frustum(
                 f"/fan/{candidate.key}",
-                fov=_vertical_fov(profile.rgb.hfov_rad if not glance else 2 * _GLANCE, aspect),
+                fov=frames.vertical_fov(
+                    profile.rgb.hfov_rad if not glance else 2 * _GLANCE, aspect
+                ),
                 aspect=aspect,
                 scale=scale,
                 color=colour,
                 thickness=4.0 if candidate.key in lit else 2.0,
                 thickness_units="screen",
-                image=_pixels(picture, vetoed=not candidate.feasible)
+                image=pixels(picture, vetoed=not candidate.feasible)
                 if picture and "thumbnails" in snapshot.view.layers
                 else None,
                 wxyz=frames.camera_wxyz(yaw_rad),
@@ -117,19 +118,3 @@ def _colour(lit: bool, feasible: bool) -> Rgb:
     if not feasible:
         return GREY
     return BLUE if lit else SLATE
-
-
-def _vertical_fov(hfov_rad: float, aspect: float) -> float:
-    return 2.0 * math.atan(math.tan(hfov_rad / 2.0) / aspect)
-
-
-def _pixels(picture: Picture, *, vetoed: bool) -> np.ndarray:
-    """Decoded pixels; greyed for a vetoed view."""
-    buffer = np.frombuffer(picture.jpeg, np.uint8)
-    bgr = cv2.imdecode(buffer, cv2.IMREAD_COLOR)
-    if bgr is None:
-        return np.full((8, 8, 3), 128, np.uint8)
-    if vetoed:
-        grey = cv2.cvtColor(bgr, cv2.COLOR_BGR2GRAY)
-        bgr = cv2.cvtColor((160 + grey // 3).clip(0, 255).astype(np.uint8), cv2.COLOR_GRAY2BGR)
-    return np.ascontiguousarray(bgr[:, :, ::-1])

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from c2nav_engine.geometry import Point, Pose
+from c2nav_engine.geometry import Point
 
 Wxyz = tuple[float, float, float, float]
 
@@ -87,9 +87,6 @@ def wedge(pose_radius_m: float) -> tuple[np.ndarray, np.ndarray]:
     return vertices, faces
 
 
-def fan_points(pose: Pose, offsets_rad: tuple[float, float], radius_m: float) -> list[Point]:
-    """The rim of a sector on the floor, from the body out and back."""
-    first, last = offsets_rad
-    angles = np.linspace(first, last, 12)
-    rim = [pose.turned(float(angle)).ahead(radius_m) for angle in angles]
-    return [pose.position_m, *rim, pose.position_m]
+def vertical_fov(hfov_rad: float, aspect: float) -> float:
+    """Vertical field of view of a pinhole with square pixels."""
+    return 2.0 * math.atan(math.tan(hfov_rad / 2.0) / aspect)

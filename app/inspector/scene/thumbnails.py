@@ -1,0 +1,28 @@
+"""Pictures for frusta: decoded once each, greyed where they were vetoed."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from jaxtyping import UInt8
+
+from c2nav_engine.contract.question import Picture
+from c2nav_engine.errors import InternalError
+from c2nav_engine.sensing.encode import decode
+
+_UNKNOWN = np.full((8, 8, 3), 128, np.uint8)
+"""Stands in for a picture that the trace holds as a digest only."""
+
+
+@lru_cache(maxsize=64)
+def pixels(picture: Picture, *, vetoed: bool = False) -> UInt8[np.ndarray, "rows columns 3"]:
+    """Decoded pixels; pale grey for a vetoed view."""
+    try:
+        rgb = decode(picture)
+    except InternalError:
+        return _UNKNOWN
+    if not vetoed:
+        return rgb
+    grey = (160 + rgb.mean(axis=2) / 3.0).clip(0, 255).astype(np.uint8)
+    return np.repeat(grey[:, :, None], 3, axis=2)
