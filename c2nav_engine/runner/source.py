@@ -17,8 +17,8 @@ from c2nav_engine.episodes.files import (
 from c2nav_engine.errors import EpisodeError, SceneError, UsageError
 from c2nav_engine.geometry import Point
 from c2nav_engine.metrics.ground_truth import follower_positions
+from c2nav_engine.runner.scene_cache import cache_folder, cached_scene
 from c2nav_engine.world.builtin import builtin_scene, builtin_source
-from c2nav_engine.world.load import load_scene
 from c2nav_engine.world.load_paths import scene_path
 from c2nav_engine.world.scene import Scene
 
@@ -68,10 +68,12 @@ class Source:
             raise SceneError(message)
         return scene_path(self.scenes, scene_id)
 
-    def scene(self, scene_id: str) -> Scene:
-        """Load or build a scene; raises `SceneError`."""
+    def scene(self, scene_id: str, *, cache: Path | None = None) -> Scene:
+        """Load a scene (large ones from the cache) or build it; raises `SceneError`."""
         path = self.scene_file(scene_id)
-        return builtin_scene(scene_id) if path is None else load_scene(path)
+        if path is None:
+            return builtin_scene(scene_id)
+        return cached_scene(path, cache or cache_folder())
 
     def missing_scenes(self, chosen: Sequence[Episode]) -> dict[str, tuple[str, ...]]:
         """Scene ids that do not resolve, each with the ids of the episodes that it blocks."""

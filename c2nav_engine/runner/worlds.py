@@ -11,6 +11,7 @@ from pathlib import Path
 
 from c2nav_engine.episodes.profile import Profile
 from c2nav_engine.geometry import Point
+from c2nav_engine.runner.scene_cache import cache_folder
 from c2nav_engine.runner.source import Source
 from c2nav_engine.sensing.renderer import Renderer
 from c2nav_engine.world.scene import Scene
@@ -21,12 +22,6 @@ SURFACE_VERSION = 2
 
 KEPT_SCENES = 2
 """Scenes that one process keeps ready; Matterport scans weigh hundreds of megabytes."""
-
-
-def cache_folder() -> Path:
-    """Where built surfaces are kept: `C2NAV_CACHE`, else the user's cache folder."""
-    default = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "c2nav"
-    return Path(os.environ.get("C2NAV_CACHE", default))
 
 
 class World:
@@ -83,7 +78,7 @@ class WorldsConfig:
     Attributes:
         profile: The body that walks them.
         renderer: Scene → renderer.
-        cache: Folder for built surfaces.
+        cache: Folder for loaded scenes and built surfaces; None for `cache_folder()`.
     """
 
     profile: Profile
@@ -104,7 +99,7 @@ class Worlds:
         if scene_id in self._kept:
             self._kept.move_to_end(scene_id)
             return self._kept[scene_id]
-        scene = self._source.scene(scene_id)
+        scene = self._source.scene(scene_id, cache=self._config.cache)
         surface, note = self._surface(scene_id, scene)
         world = World(scene, surface, self._config.renderer, note=note)
         self._kept[scene_id] = world

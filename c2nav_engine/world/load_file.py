@@ -38,8 +38,7 @@ class Contents:
 def read_pieces(path: Path) -> Contents:
     """All triangle meshes of a file; raises `SceneError` when it cannot be read."""
     facts = gltf_facts(path) if path.suffix.lower() in (".glb", ".gltf") else GltfFacts()
-    photographed = any(folder.lower() in PHOTOGRAPHED for folder in path.parts)
-    materials = Materials(facts.unlit, all_unlit=photographed)
+    materials = Materials(facts.unlit, all_unlit=is_photographed(path))
     try:
         scene = _parse(path)
         pieces = [
@@ -55,6 +54,11 @@ def read_pieces(path: Path) -> Contents:
         )
         raise SceneError(message) from error
     return Contents(pieces, facts.licence)
+
+
+def is_photographed(path: Path) -> bool:
+    """Whether a file lies in a folder of scans, whose textures hold their own light."""
+    return any(folder.lower() in PHOTOGRAPHED for folder in path.parts)
 
 
 def _trimesh() -> Any:
