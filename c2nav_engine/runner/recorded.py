@@ -18,7 +18,7 @@ from c2nav_engine.runner.trace_exchanges import exchange_of, truth_of
 from c2nav_engine.runner.trace_header import footer_of, header_of
 from c2nav_engine.traces.check import data_section_holds
 from c2nav_engine.traces.contract_messages import Show
-from c2nav_engine.traces.moments import parsed, picture_table
+from c2nav_engine.traces.moments import moments_of, parsed, picture_table
 from c2nav_engine.traces.pb.common_pb2 import Picture as PictureMessage
 from c2nav_engine.traces.pb.evaluation_pb2 import Evaluation
 from c2nav_engine.traces.reader import TraceFile
@@ -163,20 +163,17 @@ class OpenTrace:
         return self.file.picture(place.topic, place.log_time_ns, place.sha256)
 
     def _read(self, found: Iterable[Stored], *, pictures: bool) -> Iterator[Exchange]:
-        """Exchanges of messages in file order; an exchange's truth follows its message."""
         shared: dict[str, Picture] = {}
-        pending: Message | None = None
-        truth: Truth | None = None
-        for stored in found:
-            message = parsed(stored)
-            if isinstance(message, Evaluation):
-                truth = truth_of(message, self._depth(message, pictures=pictures))
-                continue
-            if pending is not None:
-                yield exchange_of(pending, truth, self._show(pending, shared, pictures=pictures))
-            pending, truth = message, None
-        if pending is not None:
-            yield exchange_of(pending, truth, self._show(pending, shared, pictures=pictures))
+        for moment in moments_of(found):
+            show = self._show(moment.message, shared, pictures=pictures)
+            yield exchange_of(
+                moment.message, self._truth(moment.evaluation, pictures=pictures), show
+            )
+
+    def _truth(self, message: Evaluation | None, *, pictures: bool) -> Truth | None:
+        if message is None:
+            return None
+        return truth_of(message, self._depth(message, pictures=pictures))
 
     def _depth(self, message: Evaluation, *, pictures: bool) -> bytes:
         places = {each.sha256: each for each in message.pictures}

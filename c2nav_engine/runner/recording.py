@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from types import TracebackType
 
-from c2nav_engine.contract.question import Slot
+from c2nav_engine.contract.question import Picture, Slot
 from c2nav_engine.errors import InternalError
 from c2nav_engine.navigator.requests import Ask, Look, Request, Rig, Seen
 from c2nav_engine.runner.exchange import Exchange, Truth
@@ -84,13 +84,13 @@ def _store_pictures(exchange: Exchange, draft: Draft) -> None:
     elif isinstance(exchange.request, Ask) and exchange.request.question.slot is Slot.LOOKBACK:
         # Both frames were stored when they were seen; here a viewer gets them side by side.
         for each in exchange.request.question.alternatives:
-            topic = f"/lookback/{each.key}"
-            if (
-                each.picture
-                and each.key in ("now", "back")
-                and not draft.store(each.picture, topic)
-            ):
-                draft.show(each.picture, topic)
+            if each.picture is not None and each.picture.jpeg and each.key in ("now", "back"):
+                _show_again(each.picture, f"/lookback/{each.key}", draft)
+
+
+def _show_again(picture: Picture, topic: str, draft: Draft) -> None:
+    if not draft.store(picture, topic):
+        draft.show(picture, topic)
 
 
 def _store_look(request: Request, seen: Seen, draft: Draft) -> None:

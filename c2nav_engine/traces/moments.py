@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from google.protobuf.message import DecodeError, Message
@@ -67,9 +67,14 @@ class Moment:
 
 def moments(trace: TraceFile) -> Iterator[Moment]:
     """Every exchange in order, without its pictures' bytes."""
+    return moments_of(trace.messages(*EXCHANGE_TOPICS, "/eval"))
+
+
+def moments_of(found: Iterable[Stored]) -> Iterator[Moment]:
+    """Messages of exchanges with the evaluation that follows each."""
     pending: Control | Decision | Sketch | Ladder | None = None
     evaluation: Evaluation | None = None
-    for stored in trace.messages(*EXCHANGE_TOPICS, "/eval"):
+    for stored in found:
         message = parsed(stored)
         if isinstance(message, Evaluation):
             evaluation = message

@@ -32,7 +32,7 @@ from c2nav_engine.traces.exports import (
 from c2nav_engine.traces.moments import parsed, picture_table
 from c2nav_engine.traces.topics import IMAGE_TOPICS
 from c2nav_engine.world.scene import Material, Piece, scene_of
-from tests.helpers.exchanges import FakeEpisode, write_fake
+from tests.helpers.exchanges import FakeEpisode, write_episode, write_fake
 
 
 @pytest.fixture(scope="module")
@@ -141,6 +141,18 @@ def test_a_redacted_trace_tells_the_same_story(trace: TraceFile, tmp_path: Path)
     ]
     difference = first_difference(trace, TraceFile(tmp_path / "r.mcap"))
     assert difference is not None and difference.topic in IMAGE_TOPICS
+
+
+def test_a_child_of_a_redacted_trace_names_pictures_without_making_any_up(
+    trace: TraceFile, tmp_path: Path
+) -> None:
+    export_redacted(trace, tmp_path / "r.mcap")
+    redacted = read_trace(tmp_path / "r.mcap")
+    child = FakeEpisode(redacted.header, redacted.exchanges, redacted.footer)
+    write_episode(tmp_path / "c.mcap", child)
+    assert check(tmp_path / "c.mcap") == []
+    assert not set(TraceFile(tmp_path / "c.mcap").topics) & set(IMAGE_TOPICS)
+    assert read_trace(tmp_path / "c.mcap").exchanges == redacted.exchanges
 
 
 # ---------------------------------------------------------------- merged
