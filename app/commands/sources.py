@@ -21,6 +21,7 @@ from c2nav_engine.runner.record import Header
 from c2nav_engine.runner.recorded import open_trace, read_trace
 from c2nav_engine.runner.recording import TraceWriter
 from c2nav_engine.runner.reshell import source_of_record
+from c2nav_engine.runner.scene_cache import cache_folder, display_scene
 from c2nav_engine.runner.source import Source
 from c2nav_engine.runner.worlds import Worlds, WorldsConfig
 from c2nav_engine.world.scene import Scene
@@ -91,7 +92,8 @@ class Live:
         )
         run = self._bench(choice.ranker or self._setting.ranker).open(spec)
         scene = run.scene
-        return Opening(header=run.header, run=run, scene=None if scene is None else lambda: scene)
+        shown = None if scene is None else partial(display_scene, scene, cache_folder())
+        return Opening(header=run.header, run=run, scene=shown)
 
     def fork(
         self, header: Header, exchanges: Sequence[Exchange], decision: int, override: Override
@@ -154,7 +156,7 @@ def _recorded(path: Path, scenes: Path | None) -> Opening:
         why = str(error)
 
     def load() -> Scene:
-        return source.scene(scene_id)
+        return display_scene(source.scene(scene_id), cache_folder())
 
     def floor() -> Surface:
         return Worlds(source, WorldsConfig(trace.header.profile)).of(scene_id).surface
