@@ -29,7 +29,7 @@ class OpenedScene:
 
 def opened_scene(name: str, scenes: Path | None, profile: Profile) -> OpenedScene:
     """Open what the words name; raises `SceneError`."""
-    scene_id, folder = _named(name, scenes)
+    scene_id, folder = named_scene(name, scenes)
     worlds = Worlds(scene_source(folder), WorldsConfig(profile))
     return OpenedScene(scene_id, folder, worlds.of(scene_id))
 
@@ -39,7 +39,8 @@ def scene_source(scenes: Path | None) -> Source:
     return Source(EpisodeFile("", (), "", ""), scenes, {}, "")
 
 
-def _named(name: str, scenes: Path | None) -> tuple[str, Path | None]:
+def named_scene(name: str, scenes: Path | None) -> tuple[str, Path | None]:
+    """The scene id and the folder below which it resolves; raises `SceneError` for neither."""
     if name.startswith(f"{BUILTIN}/"):
         return name, None
     path = Path(name)
