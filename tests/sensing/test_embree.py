@@ -288,3 +288,18 @@ def test_equal_pinholes_share_their_rays(house):
         far_m=5.0,
     )[0]
     assert np.array_equal(apart.rgb, image.rgb)
+
+
+def test_read_only_scenes_render_alike():
+    scene = textured_wall()
+    before = EmbreeRenderer(scene).render(
+        [EYE], rgb=PINHOLE, depth=PINHOLE, near_m=0.0, far_m=50.0
+    )[0]
+    for array in (scene.vertices_m, scene.triangles, scene.uvs):
+        assert array is not None
+        array.flags.writeable = False
+    after = EmbreeRenderer(scene).render([EYE], rgb=PINHOLE, depth=PINHOLE, near_m=0.0, far_m=50.0)[
+        0
+    ]
+    assert np.array_equal(before.rgb, after.rgb)
+    assert np.array_equal(before.depth_m, after.depth_m)
