@@ -142,9 +142,8 @@ class _Batch:
                 self._enter(finished)
                 yield finished
         finally:
-            # A generator stops its workers when it is closed, not when it is forgotten.
-            if isinstance(running, Generator):
-                running.close()
+            # Workers stop when the generator is closed, not when it is forgotten.
+            running.close()
 
     def _enter(self, finished: Finished) -> None:
         cost_usd = finished.cost_usd

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from pathlib import Path
 
 import pytest
@@ -43,10 +43,10 @@ APART: dict[str, Callable[[], Executor]] = {
 
 
 @pytest.fixture
-def ray_executor() -> Iterator[Executor]:
-    """A local Ray; nothing of it is left running."""
+def ray_executor() -> Executor:
+    """A local Ray, ended with each run."""
     pytest.importorskip("ray")
-    yield RayExecutor(2, work=obliging)
+    return RayExecutor(2, work=obliging)
 
 
 @pytest.mark.parametrize("name", [*IN_PROCESS, *APART])
@@ -74,7 +74,7 @@ def test_the_kit_bites(tmp_path: Path) -> None:
     class Twice:
         def run(
             self, tasks: Sequence[Task], folder: Path, *, started: Started
-        ) -> Iterator[Finished]:
+        ) -> Generator[Finished]:
             for task in [*tasks, *tasks]:
                 started(task)
                 finished = obliging(task, folder, lambda: False)
@@ -84,7 +84,7 @@ def test_the_kit_bites(tmp_path: Path) -> None:
     class Forgetful(LocalExecutor):
         def run(
             self, tasks: Sequence[Task], folder: Path, *, started: Started
-        ) -> Iterator[Finished]:
+        ) -> Generator[Finished]:
             yield from super().run(tasks[1:], folder, started=started)
 
     with pytest.raises(NotConforming, match="once"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from multiprocessing.connection import wait
 from pathlib import Path
 
@@ -35,7 +35,7 @@ class LocalExecutor:
         """Process ids of the spawned workers at work now."""
         return tuple(worker.pid for worker in self._crew.values())
 
-    def run(self, tasks: Sequence[Task], folder: Path, *, started: Started) -> Iterator[Finished]:
+    def run(self, tasks: Sequence[Task], folder: Path, *, started: Started) -> Generator[Finished]:
         """See `Executor.run`."""
         if self._workers <= 1:
             yield from run_here(tasks, folder, lanes=self._lanes, work=self._work, started=started)

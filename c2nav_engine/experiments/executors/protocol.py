@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
@@ -23,7 +23,7 @@ class Executor(Protocol):
     The conformance kit (`executors.conformance`) holds every implementation to this.
     """
 
-    def run(self, tasks: Sequence[Task], folder: Path, *, started: Started) -> Iterator[Finished]:
+    def run(self, tasks: Sequence[Task], folder: Path, *, started: Started) -> Generator[Finished]:
         """One `Finished` a task, whatever happens to workers.
 
         A task whose worker was lost is given to another, `ATTEMPTS` times in all. Closing the

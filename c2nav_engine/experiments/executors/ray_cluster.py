@@ -7,7 +7,7 @@ This module is where Ray, which types little, meets the rest.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +38,7 @@ class RayExecutor:
         self._work = work
         self._crew: dict[int, Any] = {}
 
-    def run(self, tasks: Sequence[Task], folder: Path, *, started: Started) -> Iterator[Finished]:
+    def run(self, tasks: Sequence[Task], folder: Path, *, started: Started) -> Generator[Finished]:
         """See `Executor.run`; raises `MissingExtra` without Ray."""
         ray = _ray()
         ours = not ray.is_initialized()

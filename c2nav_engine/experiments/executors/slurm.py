@@ -6,7 +6,7 @@ This module is where submitit, which types little, meets the rest.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +60,7 @@ class SlurmExecutor:
         self._work = work
         self._jobs: dict[int, Any] = {}
 
-    def run(self, tasks: Sequence[Task], folder: Path, *, started: Started) -> Iterator[Finished]:
+    def run(self, tasks: Sequence[Task], folder: Path, *, started: Started) -> Generator[Finished]:
         """See `Executor.run`; raises `MissingExtra` without submitit."""
         folder = folder.resolve()
         inbox = Inbox(folder / "jobs")
