@@ -51,6 +51,12 @@ class Light:
     background: tuple[int, int, int] = (200, 210, 220)
 
 
+def granted_threads() -> int:
+    """Threads this process may use: what its parent granted a worker, else every core."""
+    granted = os.environ.get("OMP_NUM_THREADS", "")
+    return int(granted) if granted.isdecimal() and int(granted) else os.cpu_count() or 1
+
+
 class EmbreeRenderer:
     """Colour and depth of a scene by ray casting; see `sensing.renderer.Renderer`.
 
@@ -60,7 +66,7 @@ class EmbreeRenderer:
     Args:
         scene: What to render; its arrays are kept.
         light: How surfaces are lit.
-        threads: Threads to cast and shade with; 0 uses every core.
+        threads: Threads to cast and shade with; 0 takes `OMP_NUM_THREADS`, else every core.
 
     Attributes:
         caster: The bare caster, which sees cut-outs as solid.
@@ -74,8 +80,9 @@ class EmbreeRenderer:
         self._light = light or Light()
         self._atlas = atlas_of(scene)
         self._has_cutouts = bool(self._atlas.cutout_alphas.any())
+        threads = threads or granted_threads()
         self.caster = Caster(scene, threads=threads)
-        self._pool = ThreadPoolExecutor(threads or os.cpu_count() or 1, "render")
+        self._pool = ThreadPoolExecutor(threads, "render")
         self._plans: dict[tuple[Pinhole, Pinhole], RayPlan] = {}
 
     @property

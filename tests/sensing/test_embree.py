@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from c2nav_engine.geometry import Pinhole, Pose, world_from_camera
 from c2nav_engine.sensing.caster import NO_TRIANGLE
 from c2nav_engine.sensing.conformance import room_depth_m
 from c2nav_engine.sensing.conformance_scenes import LEFT, Room, quad, textured_wall
-from c2nav_engine.sensing.embree import EmbreeRenderer, Light
+from c2nav_engine.sensing.embree import EmbreeRenderer, Light, granted_threads
 from c2nav_engine.world.load import load_scene
 from c2nav_engine.world.scene import Material, Piece, scene_of
 
@@ -303,3 +304,11 @@ def test_read_only_scenes_render_alike():
     ]
     assert np.array_equal(before.rgb, after.rgb)
     assert np.array_equal(before.depth_m, after.depth_m)
+
+
+@pytest.mark.parametrize(
+    ("granted", "expected"), [("3", 3), ("0", None), ("", None), ("4,2", None)]
+)
+def test_a_worker_uses_the_threads_it_was_granted(monkeypatch, granted, expected):
+    monkeypatch.setenv("OMP_NUM_THREADS", granted)
+    assert granted_threads() == (expected or os.cpu_count())
