@@ -24,6 +24,7 @@ from c2nav_engine.runner.reshell import shell_of
 from c2nav_engine.runner.source import open_source
 from c2nav_engine.runner.worlds import Worlds, WorldsConfig
 from c2nav_engine.sensing.noise import NoiseConfig
+from tests.helpers.audit import faults_of
 
 SHORT = replace(VLNCE, max_steps=24)
 
@@ -51,6 +52,16 @@ def recorded(bench, tmp_path_factory):
 def still(exchanges: list[Exchange]) -> list[Exchange]:
     """Exchanges without wall-clock facts."""
     return [replace(exchange, wall_s={}, ranked=None) for exchange in exchanges]
+
+
+def ask_of(exchange: Exchange) -> Ask:
+    assert isinstance(exchange.request, Ask)
+    return exchange.request
+
+
+def number_of(exchange: Exchange) -> int:
+    assert exchange.decision is not None
+    return exchange.decision
 
 
 def at_question(run: EpisodeRun, slot: Slot = Slot.SEEING) -> Ask:
@@ -90,7 +101,7 @@ def test_a_changed_answer_is_named_as_the_first_divergence(recorded):
     _, path = recorded
     trace = read_trace(path)
     asked = [e for e in trace.exchanges if isinstance(e.request, Ask)][1]
-    keys = asked.request.question.keys
+    keys = ask_of(asked).question.keys
     other = next(k for k in keys if k != getattr(asked.response, "winner", None))
     changed = replace(asked, response=Ordering.winner_only(other, keys))
     exchanges = tuple(changed if e.index == asked.index else e for e in trace.exchanges)
@@ -133,13 +144,13 @@ def test_a_fork_shares_its_parents_past_and_takes_the_other_answer(bench, record
     parent, path = recorded
     trace = read_trace(path)
     asked = [e for e in trace.exchanges if isinstance(e.request, Ask)][2]
-    keys = asked.request.question.keys
+    keys = ask_of(asked).question.keys
     other = next(k for k in keys if k != getattr(asked.response, "winner", None))
     spec = OpenSpec(
         "1",
         trace=tmp_path / "fork.mcap",
         parent_sha256=trace.sha256,
-        fork_decision=asked.decision,
+        fork_decision=number_of(asked),
     )
     override = Override(Ordering.winner_only(other, keys), "ada")
     child = bench.fork(spec, trace.exchanges, override)
@@ -186,3 +197,25 @@ def test_a_start_off_the_walkable_surface_is_named(bench):
     world = bench.worlds.of(episode.scene_id)
     with pytest.raises(StartError, match=r"episode 1: expected a start on the walkable surface"):
         start_on(world, astray)
+
+
+def test_no_step_is_one_that_a_robot_could_not_make(recorded):
+    run, _ = recorded
+    assert faults_of(run.header, run.exchanges) == []
+
+
+def test_the_audit_notices_a_teleport_and_a_faculty_out_of_turn(recorded):
+    run, _ = recorded
+    moved = next(e for e in run.exchanges if isinstance(e.request, Move))
+    assert moved.truth is not None
+    far = Pose((9.0, 0.0, 9.0), 0.0)
+    jump = replace(moved, truth=replace(moved.truth, poses=(*moved.truth.poses[:-1], far)))
+    asked = next(e for e in run.exchanges if isinstance(e.request, Ask))
+    early = replace(ask_of(asked), question=replace(ask_of(asked).question, slot=Slot.GROUND))
+    spoilt = [
+        jump if e is moved else replace(e, request=early) if e is asked else e
+        for e in run.exchanges
+    ]
+    faults = faults_of(run.header, spoilt)
+    assert any("moved" in fault for fault in faults)
+    assert any("ground in cycle" in fault for fault in faults)
