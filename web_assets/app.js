@@ -15,8 +15,9 @@ const top = h("div", { id: "c2-top" });
 const banner = h("div", { id: "c2-banner", role: "status" });
 const tabs = h("div", { id: "c2-tabs" });
 const ego = h("div", { hidden: true }, "rendered here, not what the robot saw");
+const bare = h("div", { hidden: true }, "map without the scene");
 const seen = h("div", { hidden: true });
-const pills = h("div", { id: "c2-pills" }, banner, seen, ego, tabs);
+const pills = h("div", { id: "c2-pills" }, banner, bare, seen, ego, tabs);
 top.append(document.createElement("route-strip"), pills, document.createElement("wait-card"));
 const lower = h("div", { id: "c2-low" }, document.createElement("timeline-bar"));
 const toasts = h("div", { id: "c2-toasts", role: "status", "aria-live": "polite" });
@@ -51,6 +52,10 @@ subscribe((now, changed) => {
     banner.textContent = now.branch.label;
     banner.classList.toggle("differs", now.branch.differs);
   }
+  if (changed.has("no_scene")) {
+    bare.hidden = !now.no_scene;
+    bare.title = now.no_scene;
+  }
   if (changed.has("view")) {
     ego.hidden = now.view.camera !== "ego";
   }
@@ -81,6 +86,18 @@ document.addEventListener("click", (event) => {
   if (!button) return;
   const { type, ...fields } = JSON.parse(button.dataset.command);
   send(type, fields);
+});
+
+document.addEventListener("click", async (event) => {
+  const button = event.target.closest?.("[data-copy]");
+  if (!button) return;
+  const text = button.dataset.copy === "address" ? window.location.href : button.dataset.copy;
+  try {
+    await navigator.clipboard.writeText(text);
+    toast("Copied", false);
+  } catch {
+    window.prompt("Copy this", text);
+  }
 });
 
 document.addEventListener("keydown", keys, true);

@@ -29,7 +29,7 @@ const styles = styled(`
   .letter { left: 6px; width: 24px; height: 24px; line-height: 22px; border-radius: 50%;
     text-align: center; font-size: 13px; }
   .rank { right: 6px; padding: 0 7px; border-radius: 6px; line-height: 22px; font-size: 13px; }
-  .text .letter, .text .rank { position: static; margin: 11px 0 0 10px; flex: none; }
+  .text .letter, .text .rank { position: static; margin: 11px 0 0 10px; flex: none; align-self: flex-start; }
   .text .rank { margin: 11px 10px 0 auto; }
   .pin { position: absolute; width: 18px; height: 18px; margin: -9px 0 0 -9px; border-radius: 50%;
     border: 3px solid var(--c2-blue); outline: 2px solid #fff; top: calc(var(--row) * 100cqw / var(--ratio, 1)); }

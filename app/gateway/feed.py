@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import math
 from collections.abc import AsyncIterator
 from typing import Any
 
@@ -74,17 +73,18 @@ class Feed:
         sent: Sections = {}
         try:
             while not self._closing:
+                # Cleared before the state is read: what changes meanwhile wakes the next round.
+                changed.clear()
                 now = self._sections()
                 fresh = {name: text for name, text in now.items() if sent.get(name) != text}
                 if fresh:
                     sent = now
                     yield f"event: state\ndata: {_object(fresh)}\n\n"
-                changed.clear()
+                    await asyncio.sleep(_PULSE_S)
                 try:
                     await asyncio.wait_for(changed.wait(), _HEARTBEAT_S)
                 except TimeoutError:
                     yield ": still here\n\n"
-                await asyncio.sleep(_PULSE_S)
         finally:
             self._changed.discard(changed)
             self._wake()
@@ -96,8 +96,3 @@ def _object(sections: Sections) -> str:
 
 def _text(value: Any) -> str:
     return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-
-
-def finite(value: float) -> float | None:
-    """JSON knows neither NaN nor infinity."""
-    return value if math.isfinite(value) else None

@@ -85,6 +85,7 @@ class Shell:
         # Software WebGL has no time for reflections or shadows, and a plan needs neither.
         scene.configure_environment_map(hdri=None)
         scene.configure_default_lights(enabled=True, cast_shadow=False)
+        scene.add_light_ambient("/ambient", intensity=0.8)
         scene.world_axes.visible = False
 
     def _build_docks(self) -> None:

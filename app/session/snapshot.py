@@ -115,7 +115,7 @@ class PlaceAnswer:
     basis: str
 
 
-SUSPECT_M = 0.25
+SUSPECT_M = 0.15
 """Regret below this is noise of a bundle's length [C]."""
 
 BAD_M = 1.0

@@ -11,7 +11,7 @@ import functools
 import math
 import threading
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -27,6 +27,7 @@ from c2nav_engine.contract.render import render
 from c2nav_engine.episodes.episode import Episode
 from c2nav_engine.episodes.profile import VLNCE
 from c2nav_engine.geometry import Point, Pose
+from c2nav_engine.navigator.config import LoopConfig
 from c2nav_engine.navigator.requests import (
     Action,
     Ask,
@@ -109,7 +110,7 @@ def header(**changes: Any) -> Header:
         parser="english",
         profile=VLNCE,
         variant="full",
-        config={},
+        config=LoopConfig().as_json(),
         config_sha256="",
         ranker="scripted",
         seed=0,
@@ -279,6 +280,16 @@ def _towards(key: str, pose: Pose, cycle: int) -> tuple[Action, ...]:
 # ---------------------------------------------------------------- the shell of the play
 
 
+def ranked_as(question: Question, best: Sequence[str]) -> Ranked:
+    """One ranker's record that puts keys in an order, the same in every presentation."""
+    outcome = Ordering.of(*best)
+    queries = tuple(
+        Query(render(question, order), Reply(text=" > ".join(best), latency_s=0.1), outcome)
+        for order in range(len(presentations(question)))
+    )
+    return Ranked(outcome, queries, "scripted")
+
+
 def scripted_answer(question: Question) -> Ranked:
     """Prefers ahead, then left; the first transition's orders disagree."""
     wish = ["next", "here", "covered", "now", "front", "left", "right"]
@@ -301,6 +312,8 @@ class PlayRun:
     script: Script
     delay_s: float = 0.0
     gate: threading.Event | None = None
+    answer: Callable[[Question, Pose], Ranked] | None = None
+    surface: Any = None
 
     def __post_init__(self) -> None:
         self.exchanges: list[Exchange] = []
@@ -319,7 +332,8 @@ class PlayRun:
             time.sleep(self.delay_s)
             if self.gate is not None:
                 assert self.gate.wait(60.0)
-            ranked = scripted_answer(request.question)
+            answer = self.answer or (lambda question, _: scripted_answer(question))
+            ranked = answer(request.question, self._pose)
             if self.pending is not request:
                 return ranked
             self._proposal = ranked
@@ -415,10 +429,13 @@ def live_run(
     cycles: int = 14,
     delay_s: float = 0.0,
     gate: threading.Event | None = None,
+    *,
+    answer: Callable[[Question, Pose], Ranked] | None = None,
+    surface: Any = None,
     **changes: Any,
 ) -> PlayRun:
     """A run at its first request."""
-    return PlayRun(header(**changes), script(cycles), delay_s, gate)
+    return PlayRun(header(**changes), script(cycles), delay_s, gate, answer, surface)
 
 
 def finished_run(cycles: int = 14) -> PlayRun:

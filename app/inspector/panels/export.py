@@ -1,15 +1,19 @@
-"""What can be taken away: the trace, and the address of this very view."""
+"""What can be taken away: this view's address, and the commands that make files of this branch."""
 
 from __future__ import annotations
 
+import shlex
+
 import viser
+from markupsafe import Markup
 
 from app.inspector import markup as m
 from app.inspector.panels.protocol import Dispatch, Html, Update
 from app.session.snapshot import Snapshot
+from app.session.wording import ranking
 
 
-def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:  # noqa: ARG001 # links do the work
+def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:  # noqa: ARG001 # the page copies
     """Build the panel."""
     block = Html(gui)
     return lambda snapshot: block.show(_block(snapshot))
@@ -17,14 +21,55 @@ def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:  # noqa: ARG001 # li
 
 def _block(snapshot: Snapshot) -> str:
     branch = snapshot.branch
+    source = branch.source or "TRACE.mcap"
     return m.padded(
+        m.heading("This view"),
+        Markup('<div class="c2-buttons">{}</div>').format(
+            Markup('<button type="button" class="c2-link" data-copy="address">{}</button>').format(
+                "Copy the address"
+            )
+        ),
         m.heading("This branch"),
         m.facts(
             [
-                ("trace", branch.source),
+                ("trace", branch.source or "written while it runs"),
                 ("sha256", branch.trace_sha256[:16]),
-                ("parent", branch.parent),
+                ("forked at", str(branch.fork_decision) if branch.fork_decision >= 0 else ""),
             ]
         ),
-        m.note("The address of this page restores this view"),
+        m.heading("As files"),
+        *[_command(words, line) for words, line in commands_of(snapshot, source)],
     )
+
+
+def commands_of(snapshot: Snapshot, source: str) -> list[tuple[str, str]]:
+    """What each command makes, and the command."""
+    trace = shlex.quote(source)
+    number = max(snapshot.here.decision, 0)
+    lines = [
+        ("table of decisions", f"c2nav trace export {trace} --to parquet --out decisions.parquet"),
+        ("one page to share", f"c2nav trace export {trace} --to html --out episode.html"),
+        ("video", f"c2nav trace export {trace} --to video --out episode.mp4"),
+        (
+            "figure of this decision",
+            f"c2nav figure {trace} --decisions {number} --kind strip "
+            "--width 7.16in --out figure.pdf",
+        ),
+        ("the question as it was sent", f"c2nav question {trace} --at {number}"),
+    ]
+    if not snapshot.draft.empty and snapshot.decision is not None:
+        order = shlex.quote(ranking(snapshot.draft.tiers, snapshot.decision.letters))
+        lines.append(
+            (
+                "your ranking as a fork",
+                f"c2nav fork {trace} --at {number} --ranking {order} --out fork.mcap",
+            )
+        )
+    return lines
+
+
+def _command(words: str, line: str) -> Markup:
+    return Markup(
+        '<p class="c2-note">{}</p><button type="button" class="c2-code" data-copy="{}" '
+        'title="copy">{}</button>'
+    ).format(words, line, line)

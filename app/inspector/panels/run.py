@@ -11,7 +11,7 @@ from app.inspector.panels.protocol import Dispatch, Html, Update
 from app.session import commands as c
 from app.session.branches import cost_of
 from app.session.decisions import LANES
-from app.session.snapshot import Assessment, Snapshot
+from app.session.snapshot import SUSPECT_M, Assessment, Snapshot
 from app.session.wording import SIGNS, plural, seconds
 
 
@@ -113,6 +113,6 @@ def _suspects(snapshot: Snapshot) -> Markup:
 
 
 def _regret(suspect: Assessment) -> str | Markup:
-    if suspect.regret_m is None:
+    if suspect.regret_m is None or suspect.regret_m < SUSPECT_M:
         return suspect.words
     return Markup("+{:.1f} m<small>{}</small>").format(suspect.regret_m, suspect.words)

@@ -15,8 +15,11 @@ _PITCH = math.radians(66.0)
 """Of the first view: steep enough to look over walls, flat enough to read furniture."""
 
 _FOV = math.radians(50.0)
-_USED = 0.72
+_USED = 0.7
 """Share of the half picture that the framed points may fill: the strip covers the top."""
+
+_LIFTED = 0.12
+"""Share of the half picture by which the aim is lifted."""
 
 _NEAREST_M = 6.0
 
@@ -92,6 +95,8 @@ def overview(points_m: list[Point], aspect: float = 1.0) -> tuple[Point, Point]:
     tall = math.tan(_FOV / 2.0) * _USED
     needed = np.maximum(np.abs(x) / (tall * aspect), np.abs(up) / tall) + nearer
     distance_m = max(float(needed.max()), _NEAREST_M)
+    # The strip lies over the top: what is framed moves down by lifting the aim.
+    target = target + np.array([0.0, cos, -sin]) * (_LIFTED * distance_m * math.tan(_FOV / 2.0))
     eye = target + np.array([0.0, sin, cos]) * distance_m
     return _point(eye), _point(target)
 

@@ -36,7 +36,8 @@ class Fan:
         """Show the decision's views where they were taken."""
         decision = snapshot.decision
         layers = snapshot.view.layers
-        if decision is None or "fan" not in layers or not _fanned(decision):
+        ego = snapshot.view.camera == "ego"
+        if decision is None or ego or "fan" not in layers or not _fanned(decision):
             self._group.draw(None, list)
             return
         pose = pose_of(snapshot, decision)

@@ -10,8 +10,10 @@ import viser
 
 from app.inspector.scene.cutting import CUT_M, cut_below
 from app.inspector.scene.glb import Surface, pack
+from app.inspector.scene.layer import Group
 from app.inspector.scene.section import Section, section_of
 from app.session.snapshot import Snapshot
+from c2nav_engine.geometry import Point
 from c2nav_engine.world.scene import Scene
 
 log = logging.getLogger(__name__)
@@ -32,11 +34,15 @@ class Mesh:
         self._fetch = fetch
         self._drawn: tuple[int, float] | None = None
         self._handles: list[viser.SceneNodeHandle] = []
+        self._grid = Group(scene, "/floor")
 
     def update(self, snapshot: Snapshot) -> None:
         """Send the mesh once it is there, and again on another storey."""
         mesh = self._fetch()
         shown = "scene" in snapshot.view.layers
+        missing = bool(snapshot.no_scene) and mesh is None
+        start_m = snapshot.story.header.episode.start.position_m
+        self._grid.draw(start_m if missing else None, lambda: self._floor(start_m))
         for handle in self._handles:
             if handle.visible != shown:
                 handle.visible = shown
@@ -52,6 +58,20 @@ class Mesh:
         self._clear()
         self._drawn = (snapshot.scene_serial, floor_m)
         self._handles = list(self._send(mesh, floor_m + CUT_M))
+
+    def _floor(self, start_m: Point) -> list[viser.SceneNodeHandle]:
+        """A metre grid in place of a scene that is not to be had."""
+        return [
+            self._scene.add_grid(
+                "/floor/grid",
+                width=60.0,
+                height=60.0,
+                plane="xz",
+                cell_size=1.0,
+                section_size=5.0,
+                position=start_m,
+            )
+        ]
 
     def _clear(self) -> None:
         for handle in self._handles:
