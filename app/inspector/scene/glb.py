@@ -24,6 +24,16 @@ _ARRAY, _ELEMENTS = 34962, 34963
 Json = dict[str, Any]
 
 
+def _linear() -> np.ndarray:
+    srgb = np.arange(256) / 255.0
+    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    return (linear * 255.0).round().astype(np.uint8)
+
+
+_LINEAR = _linear()
+"""sRGB to linear in eight bits: what glTF prescribes for colours at vertices."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Surface:
     """One primitive: triangles with one material.
@@ -33,7 +43,7 @@ class Surface:
         triangles: Indices, uint32.
         material: How it looks.
         uvs: Texture coordinates with the origin at the top left, or None.
-        colours: 8-bit colour with alpha, or None.
+        colours: 8-bit sRGB colour with alpha, or None.
     """
 
     positions_m: np.ndarray
@@ -64,7 +74,7 @@ class _Writer:
         if surface.uvs is not None:
             attributes["TEXCOORD_0"] = self._accessor(surface.uvs, "VEC2")
         if surface.colours is not None:
-            attributes["COLOR_0"] = self._accessor(surface.colours, "VEC4")
+            attributes["COLOR_0"] = self._accessor(_LINEAR[surface.colours], "VEC4")
         return {
             "attributes": attributes,
             "indices": self._accessor(surface.triangles.reshape(-1), "SCALAR"),
