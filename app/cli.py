@@ -29,6 +29,7 @@ COMMANDS = (
     "figure",
     "trace",
     "turning",
+    "bench",
 )
 """Subcommands; each is a function, or a table of them, of that name in `app.commands`."""
 
