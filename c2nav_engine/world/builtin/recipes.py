@@ -149,13 +149,6 @@ RECIPES: dict[str, tuple[Wish, ...]] = {
         _wish("vase", spot="corner"),
         _wish("ottoman", spot="corner"),
     ),
-    "sun room": (
-        _wish("rocking chair", "armchair", spot="corner", count=2),
-        _wish("plant", spot="corner", count=2),
-        _wish("palm", spot="corner"),
-        _wish("round table", "side table", spot="middle of the room"),
-        _wish("bench"),
-    ),
     "bathroom": (
         _wish("bathtub", spot="corner"),
         _wish("washbasin", spot="middle of a wall"),

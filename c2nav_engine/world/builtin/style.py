@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
@@ -98,32 +98,35 @@ def ceiling() -> Look:
     return Look(Material("ceiling", texture=picture, unlit=True), tile_m=2.0)
 
 
-_Choices = tuple[Callable[[], Look], ...]
+_Choice = Callable[[], Look]
 
 
-def _of(maker: Callable[..., Look], *names: str) -> _Choices:
-    return tuple((lambda name=name: maker(name)) for name in names)
+def _of(maker: Callable[[str], Look], *names: str) -> tuple[_Choice, ...]:
+    return tuple(partial(maker, name) for name in names)
 
 
-_WET = (lambda: _tiled("mint", 8), lambda: _tiled("white", 8), lambda: _tiled("beige", 8))
-_FLOORS: dict[str, _Choices] = {
+def _tiles(count: int, *names: str) -> tuple[_Choice, ...]:
+    return tuple(partial(_tiled, name, count) for name in names)
+
+
+_WET_WALLS = _tiles(8, "mint", "white", "beige")
+_FLOORS: dict[str, tuple[_Choice, ...]] = {
     "bedroom": _of(_carpet, "beige", "lavender", "sage", "blue", "plum"),
     "guest room": _of(_carpet, "ochre", "grey", "pink", "teal"),
     "children's room": _of(_carpet, "turquoise", "coral", "green"),
     "playroom": _of(_carpet, "mustard", "blue"),
-    "kitchen": (*_of(_chequered, "charcoal", "teal", "maroon"), lambda: _tiled("beige", 4)),
+    "kitchen": (*_of(_chequered, "charcoal", "teal", "maroon"), *_tiles(4, "beige")),
     "small kitchen": _of(_chequered, "navy", "olive"),
-    "bathroom": (lambda: _tiled("grey", 6), lambda: _tiled("cream", 6), lambda: _tiled("sage", 6)),
-    "laundry room": (lambda: _tiled("grey", 4),),
-    "storage room": (lambda: _tiled("beige", 3),),
-    "sun room": (lambda: _tiled("orange", 5), lambda: _tiled("cream", 4)),
+    "bathroom": _tiles(6, "grey", "cream", "sage"),
+    "laundry room": _tiles(4, "grey"),
+    "storage room": _tiles(3, "beige"),
     "library": _of(_parquet, "walnut", "cherry"),
     "music room": _of(_parquet, "oak", "cherry"),
     "dining room": (*_of(_parquet, "oak", "walnut"), *_of(_boards, "cherry")),
-    "entrance hall": (lambda: _tiled("cream", 3), *_of(_chequered, "charcoal")),
+    "entrance hall": (*_tiles(3, "cream"), *_of(_chequered, "charcoal")),
 }
 _OTHER_FLOORS = _of(_boards, "oak", "pine", "walnut", "birch")
-_PAPERS: dict[str, _Choices] = {
+_PAPERS: dict[str, tuple[_Choice, ...]] = {
     "bedroom": _of(_dotted, "lilac", "duck egg", "blush", "moss"),
     "guest room": _of(_striped, "butter", "duck egg", "blush"),
     "children's room": _of(_striped, "butter", "denim", "lilac"),
@@ -132,6 +135,7 @@ _PAPERS: dict[str, _Choices] = {
     "library": _of(_plain_wall, "moss", "denim"),
     "study": _of(_plain_wall, "slate", "terracotta", "denim"),
 }
+"""Finishes of the one wall of a room that may differ from the others."""
 
 
 def finishes(room: Room, random: np.random.Generator, taken: set[str]) -> Finishes:
@@ -145,7 +149,7 @@ def finishes(room: Room, random: np.random.Generator, taken: set[str]) -> Finish
     floors = _FLOORS.get(room.kind, _OTHER_FLOORS)
     floor = floors[int(random.integers(len(floors)))]()
     if room.kind == "bathroom":
-        wall = _WET[int(random.integers(len(_WET)))]()
+        wall = _WET_WALLS[int(random.integers(len(_WET_WALLS)))]()
         return Finishes(floor, wall, wall)
     free = [name for name in WALLS if name not in taken] or list(WALLS)
     name = free[int(random.integers(len(free)))]

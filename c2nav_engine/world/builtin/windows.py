@@ -7,7 +7,6 @@ from c2nav_engine.world.builtin.plan import OUTSIDE, Layout, Opening, Wall
 _WINDOWS: dict[str, tuple[float, float, float]] = {
     "living room": (2.0, 0.55, 2.25),
     "dining room": (1.6, 0.75, 2.2),
-    "sun room": (2.4, 0.35, 2.35),
     "kitchen": (1.3, 1.3, 2.2),
     "bedroom": (1.4, 0.9, 2.2),
     "children's room": (1.4, 0.9, 2.2),
