@@ -1,9 +1,9 @@
 """`reference-cv`: pixels and text only, by OpenCV; no weights, no network.
 
 The embedded default. It is not a vision-language model and reproduces no number of the paper: it
-knows eleven colour words, turn words and open floor. It receives what a model receives, the same
-words and the same JPEG bytes, and answers in the same text through the same parser. It reads
-neither the keys of alternatives nor anything the controller knows.
+knows common colour words, turn words and how far a view seems to reach. It receives what a model
+receives, the same words and the same JPEG bytes, and answers in the same text through the same
+parser. It reads neither the keys of alternatives nor anything the controller knows.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Labelled = Sequence[tuple[str, Alternative]]
 
 
 class ReferenceCv:
-    """Colour words, turn words and open floor against the pixels of each view."""
+    """Colour words, turn words and how far a view reaches against the pixels of each view."""
 
     @property
     def name(self) -> str:
@@ -60,7 +60,8 @@ def _scores(prompt: Prompt) -> dict[str, float] | None:
     labelled = _labelled(prompt)
     pictures = [item.picture for _, item in labelled if item.picture is not None]
     views = [Pixels(picture) for picture in pictures]
-    context = [Pixels(picture) for _, picture in question.context]
+    # The last shared picture is the current view; those before it are the sketch's thumbnails.
+    context = [Pixels(picture) for _, picture in question.context[-1:]]
     leg = judging.words_of_leg(question.legs, question.leg)
     asked = [leg]
     if question.slot is Slot.TRANSITION:
@@ -82,17 +83,15 @@ def _statement_scores(prompt: Prompt, labelled: Labelled, context: Sequence[Pixe
     """Slots whose alternatives are statements: told apart by their words, never by their keys."""
     question = prompt.question
     leg = judging.words_of_leg(question.legs, question.leg)
-    *earlier, now = context
+    now = context[-1]
     if question.slot is Slot.DIRECT:
         actions = judging.action_scores(now, leg=leg, sketch=question.sketch)
         return [_matching(item.text, _ACTION_WORDS, actions) for _, item in labelled]
     if question.slot is Slot.TRANSITION:
         following = judging.words_of_leg(question.legs, question.leg + 1)
-        support = judging.next_leg_support(
-            now, earlier, legs=(leg, following), sketch=question.sketch
-        )
+        support = judging.next_leg_support(now, legs=(leg, following), sketch=question.sketch)
     elif question.slot is Slot.GROUND:
-        support = 1.0 if judging.arrived_here(now, leg) else -1.0
+        support = 1.0 if judging.arrived_here(now, leg, sketch=question.sketch) else -1.0
     else:
         covered = judging.journey_covered(now, leg, sketch=question.sketch)
         support = 1.0 if covered else -1.0

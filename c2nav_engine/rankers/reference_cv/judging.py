@@ -16,18 +16,21 @@ from c2nav_engine.rankers.reference_cv.words import (
     LegWords,
     amount_in_leg,
     read_leg,
-    turned_in_leg,
+    turns_made,
 )
 
 NEAR_REACH = 0.70
 """[C] A thing that stands on the floor and reaches this far down a level picture is some three
 metres away or less, for the cameras of both body profiles; here it only means "near"."""
-NEAR_SHARE = 0.02
+NEAR_SHARE = 0.008
 """[C] Smaller spots are not trusted to be the thing itself."""
-BLOCKED = 0.35
-"""[C] Openness under which something stands close ahead."""
-ENOUGH_STEPS = 3
-"""[C] "many steps" in the sketch's words: how far a leg without any visible end is followed."""
+NEAR_HANGING_SHARE = 0.015
+"""[C] A thing on a wall is near when it is at least so large."""
+FEW, SEVERAL, MANY = 1, 2, 3
+"""The sketch's words for how far a leg went."""
+AMOUNT_SUPPORT = {0: 0.1, FEW: -0.5, SEVERAL: -0.2, MANY: 0.35}
+"""[C] What the way made in a leg says for the next one: it is asked past the progress gate only,
+so nothing said (no sketch) leans onward."""
 
 
 def direction_scores(
@@ -42,58 +45,53 @@ def direction_scores(
         sketch: The sketch's words, which say whether the leg's turn was made.
     """
     return [
-        2.0 * sum(_attraction(view, landmark) for landmark in leg.landmarks)
-        + _turn_prior(side, leg.turn, sketch)
-        + 0.8 * view.openness
+        3.0 * sum(_attraction(view, landmark) for landmark in leg.landmarks)
+        + _side_prior(side, leg, sketch)
+        + view.depth_of_view
         for view, side in zip(views, sides, strict=True)
     ]
 
 
-def next_leg_support(
-    now: Pixels, earlier: Sequence[Pixels], *, legs: tuple[LegWords, LegWords], sketch: str
-) -> float:
+def next_leg_support(now: Pixels, *, legs: tuple[LegWords, LegWords], sketch: str) -> float:
     """Evidence for the next leg minus evidence for this one; 0 when nothing speaks.
 
-    The next leg's landmark in view, this leg's landmark reached or passed, this leg's turn made,
-    and, without any colour to look for, a long way in this leg speak for the next one.
+    A long way made in this leg, its landmark reached and the next leg's in view speak for the
+    next one; this leg's landmark in view but still far speaks for this one.
     """
     this, following = legs
-    support = 0.0
-    if following.target is not None:
-        support += _visibility(now.spot(following.target.colour), following.target)
+    support = AMOUNT_SUPPORT[amount_in_leg(sketch)]
     if this.target is not None:
-        here = _visibility(now.spot(this.target.colour), this.target)
-        before = max(
-            (_visibility(view.spot(this.target.colour), this.target) for view in earlier),
-            default=0.0,
-        )
-        passed = before - here
-        support += 0.8 if is_near(now, this.target) else max(passed, 0.0) - 0.7 * here
-    amount = amount_in_leg(sketch)
-    if this.turn and sketch:
-        support += 0.3 if turned_in_leg(sketch, this.turn) else -0.3
-    return support + {0: 0.0, 1: -0.25, 2: 0.0, 3: 0.35}[amount]
+        seen = _visibility(now.spot(this.target.colour), this.target)
+        support += 0.4 if is_near(now, this.target) else -0.4 * seen
+    if following.target is not None:
+        support += 0.5 * _visibility(now.spot(following.target.colour), following.target)
+    return support
 
 
 def is_near(view: Pixels, landmark: Landmark) -> bool:
-    """Whether the landmark's colour is there, large, and low in the picture."""
+    """Whether the landmark's colour is there, large enough, and low enough where it stands."""
     spot = view.spot(landmark.colour)
+    if landmark.hanging:
+        return spot.share >= NEAR_HANGING_SHARE
     return spot.share >= NEAR_SHARE and spot.reach >= NEAR_REACH
 
 
-def arrived_here(now: Pixels, leg: LegWords) -> bool:
-    """Whether the last leg's thing is near; without one, whether something stands close ahead."""
+def arrived_here(now: Pixels, leg: LegWords, *, sketch: str) -> bool:
+    """Whether the last leg's thing is near; without one, whether the leg has gone some way.
+
+    A last leg is short: it only leads up to what was in view when it began.
+    """
     if leg.target is not None:
         return is_near(now, leg.target)
-    return now.openness < BLOCKED
+    return amount_in_leg(sketch) >= SEVERAL
 
 
 def journey_covered(now: Pixels, leg: LegWords, *, sketch: str) -> bool:
-    """Whether the record speaks for the whole route: the last leg went far, or its end is near."""
+    """Whether the record speaks for the whole route: the last leg went on, to its end."""
     amount = amount_in_leg(sketch)
     if leg.target is not None:
-        return amount >= 1 and is_near(now, leg.target)
-    return amount >= ENOUGH_STEPS
+        return amount >= FEW and is_near(now, leg.target)
+    return amount >= SEVERAL
 
 
 def destination_score(view: Pixels, leg: LegWords) -> float:
@@ -106,14 +104,15 @@ def destination_score(view: Pixels, leg: LegWords) -> float:
 
 def action_scores(now: Pixels, *, leg: LegWords, sketch: str) -> dict[str, float]:
     """Direct action: where in the current view the leg's landmark or turn word points."""
-    scores = {"forward": 0.35 + 0.8 * now.openness, "left": 0.3, "right": 0.3}
-    for side in ("left", "right"):
-        scores[side] += max(0.0, _turn_prior(f"to the {side}", leg.turn, sketch))
+    scores = {
+        "forward": _side_prior("ahead", leg, sketch) + now.depth_of_view - 3.0,
+        "left": _side_prior("to the left", leg, sketch),
+        "right": _side_prior("to the right", leg, sketch),
+    }
     if leg.target is not None:
         spot = now.spot(leg.target.colour)
-        strength = 2.0 * _visibility(spot, leg.target)
         pointed = "forward" if abs(spot.across) < 0.5 else "left" if spot.across < 0 else "right"
-        scores[pointed] += strength
+        scores[pointed] += 1.5 * _visibility(spot, leg.target)
     return scores
 
 
@@ -133,15 +132,22 @@ def _visibility(spot: Spot, landmark: Landmark) -> float:
     trust = 0.25 if landmark.colour in FAINT else 1.0
     if spot.share > 0.5:
         trust *= 0.3
-    return trust * min(1.0, math.sqrt(spot.share / 0.08))
+    return trust * min(1.0, math.sqrt(spot.share / 0.05))
 
 
-def _turn_prior(side: str, turn: str, sketch: str) -> float:
-    ahead = 0.5 if side.startswith("ahead") else 0.0
+def _side_prior(side: str, leg: LegWords, sketch: str) -> float:
+    """What words alone say for a side: going on ahead, the leg's turn, the side it leaves on."""
+    prior = 0.2 if side == "ahead" else 0.0
     if side.startswith("behind"):
-        ahead = 0.4 if turn == "around" else -0.4
-    wanted = turn in {"left", "right"} and f"to the {turn}" in side
-    if not wanted or (sketch and turned_in_leg(sketch, turn)):
-        return ahead
+        prior -= 0.5
+    amount = amount_in_leg(sketch)
+    if leg.exit_side and leg.exit_side in side and amount >= SEVERAL:
+        prior += 0.3
+    turn = leg.turn
+    due = turn is not None and (turn.opening or amount >= MANY)
+    if turn is None or not due or turns_made(sketch, turn.side) >= turn.cycles:
+        return prior
+    if turn.side == "around":
+        return prior + (0.0 if side == "ahead" else 0.5)
     # Without a sketch nothing says whether the turn was made, so its word counts for less.
-    return ahead + (0.7 if sketch else 0.2)
+    return prior + (0.6 if sketch else 0.2) * (turn.side in side)

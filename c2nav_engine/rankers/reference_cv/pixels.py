@@ -1,4 +1,4 @@
-"""What the pixels of one JPEG show: spots of a named colour, and how open the floor ahead is.
+"""What the pixels of one JPEG show: spots of a named colour, and how far the view reaches.
 
 The only module of this ranker that touches OpenCV. Pictures are read at most 128 px wide, so a
 view costs a few milliseconds.
@@ -7,12 +7,11 @@ view costs a few milliseconds.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float, Int32, UInt8
+from jaxtyping import Bool, Float32, UInt8
 
 from c2nav_engine.contract.question import Picture
 from c2nav_engine.errors import InternalError
@@ -58,9 +57,9 @@ class Pixels:
         return bool(np.percentile(chroma, 99.0) < _COLOURLESS_CHROMA)
 
     def spot(self, colour: str) -> Spot:
-        """The largest patch of a basic colour term."""
-        mask = _COLOURS[colour](*np.moveaxis(self._hsv.astype(np.int16), -1, 0))
-        opened = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
+        """The largest patch of a colour."""
+        mask = _COLOURS[colour].mask(self._hsv).astype(np.uint8)
+        opened = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((2, 2), np.uint8))
         count, _, stats, centres = cv2.connectedComponentsWithStats(opened, connectivity=8)
         if count < 2:
             return Spot()
@@ -73,16 +72,21 @@ class Pixels:
         return Spot(share, 2.0 * float(centres[largest][0]) / columns - 1.0, lower / rows)
 
     @functools.cached_property
-    def openness(self) -> float:
-        """How far up the floor reaches in the middle third, 0 (blocked) to 1 (to the horizon).
+    def depth_of_view(self) -> float:
+        """How far the view seems to reach straight ahead: the detail at and below its middle.
 
-        Pixels like the strip at the bottom and connected to it count as floor. A textured floor
-        or a shadow can hide some of it: secondary evidence only.
+        A near wall or cupboard is smooth there, while far rooms crowd many edges into few pixels.
+        Unitless, some 2 (a bare wall) to 5; secondary evidence only.
         """
-        floor = _floor(self._bgr)
-        rows, columns = floor.shape
-        below = floor[rows // 2 :, columns // 3 : 2 * columns // 3]
-        return float(np.mean(below))
+        grey: Float32[np.ndarray, "rows columns"] = np.asarray(
+            cv2.cvtColor(self._bgr, cv2.COLOR_BGR2GRAY), dtype=np.float32
+        )
+        across, down = (cv2.Sobel(grey, cv2.CV_32F, dx, 1 - dx) for dx in (1, 0))
+        rows, columns = grey.shape
+        middle = np.hypot(across, down)[
+            2 * rows // 5 : 7 * rows // 10, columns // 3 : -columns // 3
+        ]
+        return float(np.log1p(middle).mean())
 
 
 def _decoded(jpeg: bytes) -> Bgr:
@@ -96,70 +100,43 @@ def _decoded(jpeg: bytes) -> Bgr:
     return np.asarray(bgr, dtype=np.uint8)
 
 
-def _floor(bgr: Bgr) -> Mask:
-    smooth = cv2.medianBlur(bgr, 5)
-    lab: Float[np.ndarray, "rows columns 3"] = np.asarray(
-        cv2.cvtColor(smooth, cv2.COLOR_BGR2LAB), dtype=np.float64
-    )
-    rows, columns = lab.shape[:2]
-    strip = lab[-max(2, rows // 16) :, columns // 4 : 3 * columns // 4].reshape(-1, 3)
-    colour = np.median(strip, axis=0)
-    # Light falls off along a floor: brightness may drift more than hue.
-    apart = np.abs(lab - colour) * np.array([0.5, 1.0, 1.0])
-    alike = (np.linalg.norm(apart, axis=-1) < 16.0).astype(np.uint8)
-    patches: Int32[np.ndarray, "rows columns"] = np.asarray(
-        cv2.connectedComponents(alike, connectivity=4)[1], dtype=np.int32
-    )
-    under: list[int] = np.unique(patches[-1, columns // 4 : 3 * columns // 4]).tolist()
-    return np.isin(patches, [patch for patch in under if patch > 0])
+@dataclass(frozen=True, slots=True)
+class _Range:
+    """A box of HSV as OpenCV scales it: hue 0–179 (wrapping), saturation and value 0–255."""
 
+    hue: tuple[int, int] = (0, 179)
+    saturation: tuple[int, int] = (0, 255)
+    value: tuple[int, int] = (0, 255)
 
-def _hue(low: int, high: int, *, saturation: int, value: int) -> Callable[..., Mask]:
-    """Pixels of a hue interval (OpenCV's 0–179, wrapping) above a saturation and a value."""
-
-    def mask(hue: np.ndarray, sat: np.ndarray, val: np.ndarray) -> Mask:
+    def mask(self, hsv: Hsv) -> Mask:
+        """Pixels inside the box."""
+        hue, saturation, value = np.moveaxis(hsv, -1, 0)
+        low, high = self.hue
         inside = (hue >= low) & (hue <= high) if low <= high else (hue >= low) | (hue <= high)
-        return inside & (sat >= saturation) & (val >= value)
-
-    return mask
-
-
-def _brown(hue: np.ndarray, sat: np.ndarray, val: np.ndarray) -> Mask:
-    return (hue >= 4) & (hue <= 20) & (sat >= 60) & (val >= 40) & (val < 165)
+        for channel, (least, most) in ((saturation, self.saturation), (value, self.value)):
+            inside = inside & (channel >= least) & (channel <= most)
+        return inside
 
 
-def _orange(hue: np.ndarray, sat: np.ndarray, val: np.ndarray) -> Mask:
-    return (hue >= 7) & (hue <= 19) & (sat >= 130) & (val >= 165)
-
-
-def _pink(hue: np.ndarray, sat: np.ndarray, val: np.ndarray) -> Mask:
-    pale_red = ((hue >= 165) | (hue <= 6)) & (sat >= 45) & (sat < 130) & (val >= 150)
-    return pale_red | ((hue >= 150) & (hue < 165) & (sat >= 45) & (val >= 130))
-
-
-def _white(_hue: np.ndarray, sat: np.ndarray, val: np.ndarray) -> Mask:
-    return (sat < 30) & (val >= 215)
-
-
-def _grey(_hue: np.ndarray, sat: np.ndarray, val: np.ndarray) -> Mask:
-    return (sat < 35) & (val >= 70) & (val < 200)
-
-
-def _black(_hue: np.ndarray, _sat: np.ndarray, val: np.ndarray) -> Mask:
-    return val < 48
-
-
-_COLOURS: dict[str, Callable[..., Mask]] = {
-    "red": _hue(170, 6, saturation=130, value=60),
-    "orange": _orange,
-    "yellow": _hue(20, 34, saturation=110, value=130),
-    "green": _hue(36, 84, saturation=60, value=40),
-    "blue": _hue(95, 128, saturation=90, value=45),
-    "purple": _hue(129, 155, saturation=60, value=45),
-    "pink": _pink,
-    "brown": _brown,
-    "white": _white,
-    "grey": _grey,
-    "black": _black,
+_COLOURS: dict[str, _Range] = {
+    "red": _Range((171, 6), (130, 255), (70, 255)),
+    "maroon": _Range((165, 8), (90, 255), (40, 140)),
+    "orange": _Range((7, 18), (140, 255), (150, 255)),
+    "brown": _Range((4, 20), (60, 255), (40, 165)),
+    "yellow": _Range((22, 34), (120, 255), (150, 255)),
+    "mustard": _Range((20, 29), (130, 255), (110, 230)),
+    "olive": _Range((24, 40), (80, 255), (50, 160)),
+    "green": _Range((42, 85), (70, 255), (40, 255)),
+    "teal": _Range((82, 97), (100, 255), (50, 180)),
+    "turquoise": _Range((82, 97), (90, 255), (140, 255)),
+    "blue": _Range((98, 125), (100, 255), (60, 255)),
+    "navy": _Range((105, 128), (80, 255), (25, 120)),
+    "lavender": _Range((120, 145), (30, 110), (140, 255)),
+    "purple": _Range((128, 155), (70, 255), (40, 220)),
+    "magenta": _Range((145, 170), (110, 255), (80, 255)),
+    "pink": _Range((150, 178), (35, 130), (140, 255)),
+    "white": _Range(saturation=(0, 30), value=(215, 255)),
+    "grey": _Range(saturation=(0, 35), value=(70, 200)),
+    "black": _Range(value=(0, 48)),
 }
-"""Basic colour terms in HSV, as OpenCV scales it."""
+"""What the colour words mean; neighbours overlap, as they do in speech."""

@@ -1,7 +1,7 @@
 """What the words of a leg ask to look for: coloured things, turns, and what to leave behind.
 
-The vocabulary is the eleven basic colour terms of English and a few things that have a colour of
-their own. Every other word is ignored: this ranker does not know what a sofa looks like.
+The vocabulary is common English colour names and a few things that have a colour of their own.
+Every other word is ignored: this ranker does not know what a sofa looks like, only what is red.
 """
 
 from __future__ import annotations
@@ -11,38 +11,45 @@ from dataclasses import dataclass
 
 COLOUR_WORDS = {
     "red": "red",
+    "scarlet": "red",
+    "maroon": "maroon",
+    "burgundy": "maroon",
     "orange": "orange",
-    "yellow": "yellow",
-    "green": "green",
-    "blue": "blue",
-    "purple": "purple",
-    "violet": "purple",
-    "pink": "pink",
     "brown": "brown",
     "wooden": "brown",
+    "yellow": "yellow",
+    "gold": "mustard",
+    "mustard": "mustard",
+    "olive": "olive",
+    "green": "green",
+    "teal": "teal",
+    "turquoise": "turquoise",
+    "cyan": "turquoise",
+    "aqua": "turquoise",
+    "blue": "blue",
+    "navy": "navy",
+    "indigo": "navy",
+    "lavender": "lavender",
+    "lilac": "lavender",
+    "purple": "purple",
+    "violet": "purple",
+    "magenta": "magenta",
+    "pink": "pink",
     "black": "black",
     "white": "white",
     "grey": "grey",
     "gray": "grey",
 }
-COLOURED_THINGS = {
-    "plant": "green",
-    "plants": "green",
-    "tree": "green",
-    "grass": "green",
-    "bush": "green",
-    "window": "white",
-    "windows": "white",
-    "refrigerator": "white",
-    "fridge": "white",
-    "bathtub": "white",
-    "toilet": "white",
-    "sink": "white",
-}
+COLOURED_THINGS = {"plant": "green", "plants": "green", "tree": "green", "bush": "green"}
 """Things whose usual colour stands in for one that is not said."""
 
 FAINT = frozenset({"white", "grey", "black", "brown"})
 """Colours that walls, floors and shadows have too: weak evidence for a thing."""
+
+HANGING = frozenset(
+    ["painting", "paintings", "picture", "pictures", "poster", "photo", "clock", "mirror", "frame"]
+)
+"""Things on walls: their lower edge says nothing about how near they are."""
 
 _COLOUR = re.compile(rf"\b(?:{'|'.join([*COLOUR_WORDS, *COLOURED_THINGS])})\b")
 _LEAVING = re.compile(
@@ -50,9 +57,15 @@ _LEAVING = re.compile(
 )
 _BEHIND_AFTER = re.compile(r"^[^,.;]{0,20}\bbehind you\b")
 _TURN = re.compile(
-    r"\b(?:turn|turning|veer|bear|go|head|take|make|hang|pivot|swing|curve)\b"
-    r"[^,.;]{0,18}?\b(left|right|around|back)\b"
+    r"\b(?:turn|turning|veer|bear|take|make|hang|pivot|swing|curve)\b"
+    r"(?P<between>[^,.;]{0,18}?)\b(?P<side>left|right|around|back)\b"
 )
+_SLIGHT = re.compile(r"\b(?:slight|slightly|little|bit)\b")
+_ON_SIDE = re.compile(
+    r"\b(?:into|in|through|enter|to)\b[^,.;]{0,40}\bon (?:the|your) (left|right)\b"
+)
+_OPENING_WORDS = 4
+"""A turn that begins within so many words opens its leg ("Then turn left and …")."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,13 +73,30 @@ class Landmark:
     """A coloured thing that a leg names.
 
     Attributes:
-        colour: Basic colour term.
+        colour: One of the colours that `pixels` knows.
         weight: 1 for what the leg leads to, less for what it mentions before, negative for what
             it leaves behind.
+        hanging: Whether it hangs on a wall rather than stands on the floor.
     """
 
     colour: str
     weight: float
+    hanging: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """A turn that a leg asks for.
+
+    Attributes:
+        side: "left", "right" or "around".
+        cycles: How many elections of a side view it takes: 1 slight, 2 plain, 4 around.
+        opening: Whether the leg begins with it.
+    """
+
+    side: str
+    cycles: int
+    opening: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,12 +105,14 @@ class LegWords:
 
     Attributes:
         landmarks: Coloured things, in order of mention.
-        turn: "left", "right", "around" or "".
+        turn: The first turn, if there is one.
+        exit_side: On which side the leg leaves ("into the bedroom on your left"), or "".
         spoken_colour: Whether a colour word itself is there, so that only colour can decide.
     """
 
     landmarks: tuple[Landmark, ...]
-    turn: str
+    turn: Turn | None
+    exit_side: str
     spoken_colour: bool
 
     @property
@@ -98,19 +130,29 @@ def read_leg(leg: str) -> LegWords:
     spoken = [match for match in found if match.group() in COLOUR_WORDS]
     chosen = spoken or found
     landmarks = tuple(
-        Landmark(_colour(match.group()), _weight(folded, match, last=match is chosen[-1]))
+        Landmark(
+            _colour(match.group()),
+            _weight(folded, match, last=match is chosen[-1]),
+            hanging=_noun(folded, match) in HANGING,
+        )
         for match in chosen
     )
-    turn = _TURN.search(folded)
-    return LegWords(landmarks, _side(turn.group(1)) if turn else "", bool(spoken))
+    side = _ON_SIDE.search(folded)
+    return LegWords(landmarks, _turn(folded), side.group(1) if side else "", bool(spoken))
 
 
-def turned_in_leg(sketch: str, side: str) -> bool:
-    """Whether the sketch says that this leg already turned that way."""
-    so_far = _this_leg(sketch)
+def turns_made(sketch: str, side: str) -> int:
+    """How often the latest moves of this leg turned that way, less the other way.
+
+    "around" counts either side. A sharp turn counts twice, a turn back four times.
+    """
+    moves = re.search(r"latest moves[^:]*: ([^\n]*)", sketch.casefold())
+    said = moves.group(1) if moves else ""
+    left, right = (_count(said, word) for word in ("left", "right"))
+    back = 4 * said.count("turned back")
     if side == "around":
-        return "back" in so_far
-    return re.search(rf"\b{side}\b", so_far) is not None
+        return abs(left - right) + back
+    return (left - right if side == "left" else right - left) + back
 
 
 def amount_in_leg(sketch: str) -> int:
@@ -130,6 +172,11 @@ def _this_leg(sketch: str) -> str:
     return found.group(1) if found else sketch.casefold()
 
 
+def _noun(text: str, match: re.Match[str]) -> str:
+    found = re.match(r"\W*(\w+)", text[match.end() :])
+    return found.group(1) if found else ""
+
+
 def _colour(word: str) -> str:
     return COLOUR_WORDS.get(word) or COLOURED_THINGS[word]
 
@@ -140,5 +187,15 @@ def _weight(text: str, match: re.Match[str], *, last: bool) -> float:
     return 1.0 if last else 0.5
 
 
-def _side(word: str) -> str:
-    return "around" if word in {"around", "back"} else word
+def _turn(text: str) -> Turn | None:
+    found = _TURN.search(text)
+    if found is None:
+        return None
+    opening = len(text[: found.start()].split()) < _OPENING_WORDS
+    if found["side"] in {"around", "back"}:
+        return Turn("around", 4, opening)
+    return Turn(found["side"], 1 if _SLIGHT.search(found["between"]) else 2, opening)
+
+
+def _count(moves: str, side: str) -> int:
+    return moves.count(f"turned {side}") + 2 * moves.count(f"turned sharply {side}")
