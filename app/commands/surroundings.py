@@ -13,6 +13,7 @@ from c2nav_engine.errors import NavMeshError, SceneError
 from c2nav_engine.runner.reshell import source_of_record
 from c2nav_engine.runner.worlds import Worlds, WorldsConfig
 from c2nav_engine.world.scene import Scene
+from c2nav_engine.world.surface import Surface
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,11 +22,13 @@ class Surroundings:
 
     Attributes:
         scene: The mesh; None where it is not to be had.
+        surface: The floor that was measured on; None likewise.
         plan: Floor and walls from above.
         why_not: Why there is no scene, and what to do about it; "" where there is one.
     """
 
     scene: Scene | None = None
+    surface: Surface | None = None
     plan: Plan = field(default_factory=Plan)
     why_not: str = ""
 
@@ -40,7 +43,9 @@ def surroundings_of(story: Story, scenes: Path | None) -> Surroundings:
         return Surroundings(why_not=str(error))
     heights_m = [footstep.pose.position_m[1] for footstep in story.track.footsteps]
     floor = floor_rings(world.surface.triangles(), heights_m)
-    return Surroundings(world.scene, Plan(floor, _walls(world.scene, heights_m[0] + CUT_M)))
+    return Surroundings(
+        world.scene, world.surface, Plan(floor, _walls(world.scene, heights_m[0] + CUT_M))
+    )
 
 
 def _walls(scene: Scene, height_m: float) -> tuple[tuple[tuple[float, float], ...], ...]:

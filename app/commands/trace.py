@@ -8,6 +8,7 @@ from typing import Annotated
 import tyro
 from rich.console import Console
 
+from app.commands.exporting import export
 from app.commands.options import JsonOpt
 from app.commands.output import print_json
 from c2nav_engine.runner.recorded import open_trace
@@ -72,5 +73,5 @@ def recover(
     return 0
 
 
-trace = {"info": info, "check": check, "recover": recover}
+trace = {"info": info, "check": check, "recover": recover, "export": export}
 """Subcommands of `c2nav trace`."""

@@ -19,6 +19,7 @@ STOREY_M = 0.9
 """Floor this far above or below the way walked belongs to another storey [C]."""
 
 _MOST_CELLS = 8192
+_SUBCELLS = 16.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,17 +46,18 @@ def floor_rings(
     """The outline of a walkable surface, near the heights that were walked."""
     low, high = min(heights_m) - STOREY_M, max(heights_m) + STOREY_M
     middle = triangles_m[:, :, 1].mean(axis=1)
-    near = triangles_m[(middle >= low) & (middle <= high)][:, :, (0, 2)]
+    near: np.ndarray = triangles_m[(middle >= low) & (middle <= high)][:, :, (0, 2)]
     if not len(near):
         return ()
-    corner = near.reshape(-1, 2).min(axis=0) - 2 * CELL_M
-    extent = near.reshape(-1, 2).max(axis=0) + 2 * CELL_M - corner
-    columns, rows = (np.ceil(extent / CELL_M).astype(int) + 1).tolist()
+    points = near.reshape(-1, 2)
+    corner: np.ndarray = points.min(axis=0) - 2 * CELL_M
+    extent: np.ndarray = points.max(axis=0) + 2 * CELL_M - corner
+    columns, rows = (int(cells) + 1 for cells in np.ceil(extent / CELL_M))
     if max(columns, rows) > _MOST_CELLS:
         return ()
     mask = np.zeros((rows, columns), np.uint8)
-    cells: np.ndarray = np.round((near - corner) / CELL_M * 16.0)
-    for polygon in cells.astype(np.int32):
+    cells: np.ndarray = np.round((near - corner) / CELL_M * _SUBCELLS)
+    for polygon in list(cells.astype(np.int32)):
         cv2.fillConvexPoly(mask, polygon, (1,), shift=4)
     return rings_of(mask > 0, (float(corner[0]), float(corner[1])), CELL_M)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -23,6 +24,11 @@ from c2nav_engine.navigator.requests import Candidate
 _LEAD = 1.25
 """Line height over text size."""
 
+_WORDS_IN = 0.95
+"""Least width of a card that prints the question's words for an alternative."""
+
+_MARKS = re.compile(r"<leg>(.*?)</leg>", re.DOTALL)
+
 _BADGES_IN = 0.24
 """Room for letter and rank on a card without a picture."""
 
@@ -38,6 +44,7 @@ class Card:
         picture: What was shown, if anything.
         vetoed: Whether it was taken out before the question.
         columns: Width in cards.
+        words: What the question says of it, printed where there is room.
     """
 
     letter: str
@@ -46,6 +53,7 @@ class Card:
     picture: Picture | None
     vetoed: bool = False
     columns: int = 1
+    words: str = ""
 
 
 def draw_strip(
@@ -124,11 +132,11 @@ class _Block:
         shown = _BADGES_IN
         if picture is not None:
             shown = width_in * picture.height_px / picture.width_px
-        lines = sum(len(self._wrap(line, width_in)) for line in card.lines)
+        lines = sum(len(self._wrap(line, width_in)) for line in _lines(card, width_in))
         return shown + lines * self._lead_in + 0.1
 
     def _wrap(self, line: str, width_in: float) -> list[str]:
-        return wrapped(line, width_in - 0.08, self._style.small_pt, most=5)
+        return wrapped(line, width_in - 0.08, self._style.small_pt, most=6)
 
     def height_in(self, card_in: float) -> float:
         """Height of the whole block at a card width."""
@@ -181,7 +189,7 @@ class _Block:
         weight = 1.8 if first else (0.9 if card.rank == 2 else 0.6)
         sheet.box(box, edge=INK if card.rank == 2 else edge, width_pt=weight, dash=dash)
         self._badges(sheet, card, box)
-        for line in card.lines:
+        for line in _lines(card, width):
             for part in self._wrap(line, width):
                 beneath += self._lead_in
                 self._caption(sheet, part, (left + 0.04, beneath + 0.01))
@@ -254,7 +262,20 @@ def _card(decision: Decision, candidate: Candidate, rank: int | None) -> Card:
         lines += f"✕ {candidate.veto}".split(", ")
     wide = picture is not None and picture.width_px > 1.5 * picture.height_px
     letter = decision.letters.get(candidate.key, "–")
-    return Card(letter, rank, tuple(lines), picture, not candidate.feasible, 3 if wide else 1)
+    words = "" if picture or not alternative else _MARKS.sub("“\\1”", alternative.text)
+    return Card(
+        letter,
+        rank,
+        tuple(lines),
+        picture,
+        not candidate.feasible,
+        columns=3 if wide else 1,
+        words=words,
+    )
+
+
+def _lines(card: Card, width_in: float) -> tuple[str, ...]:
+    return (*card.lines, card.words) if card.words and width_in >= _WORDS_IN else card.lines
 
 
 def answer_words(decision: Decision) -> str:

@@ -24,14 +24,15 @@ _ARRAY, _ELEMENTS = 34962, 34963
 Json = dict[str, Any]
 
 
-def _linear() -> np.ndarray:
-    srgb = np.arange(256) / 255.0
-    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
-    return (linear * 255.0).round().astype(np.uint8)
+_SRGB = np.arange(256) / 255.0
+_LINEAR = np.where(_SRGB <= 0.04045, _SRGB / 12.92, ((_SRGB + 0.055) / 1.055) ** 2.4)
 
 
-_LINEAR = _linear()
-"""sRGB to linear in eight bits: what glTF prescribes for colours at vertices."""
+def _linear(colours: np.ndarray) -> np.ndarray:
+    """From sRGB to linear in eight bits, alpha as it is: what glTF prescribes at vertices."""
+    linear = (_LINEAR * 255.0).round().astype(np.uint8)[colours]
+    linear[:, 3] = colours[:, 3]
+    return linear
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,7 +75,7 @@ class _Writer:
         if surface.uvs is not None:
             attributes["TEXCOORD_0"] = self._accessor(surface.uvs, "VEC2")
         if surface.colours is not None:
-            attributes["COLOR_0"] = self._accessor(_LINEAR[surface.colours], "VEC4")
+            attributes["COLOR_0"] = self._accessor(_linear(surface.colours), "VEC4")
         return {
             "attributes": attributes,
             "indices": self._accessor(surface.triangles.reshape(-1), "SCALAR"),
