@@ -48,6 +48,9 @@ COLUMNS: Mapping[str, Any] = {
 }
 """Name → type, in file order; missing is null (empty in the CSV)."""
 
+WALL_COLUMNS = ("latency_s", "trace_sha256")
+"""What differs between two runs of the same specs: waiting times, and traces that hold them."""
+
 
 def write_rows(rows: Iterable[Row], folder: Path) -> None:
     """Write `episodes.parquet` and `episodes.csv`, replacing earlier ones whole."""

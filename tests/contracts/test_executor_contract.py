@@ -21,7 +21,6 @@ from c2nav_engine.experiments.executors.conformance import (
 )
 from c2nav_engine.experiments.executors.local import LocalExecutor
 from c2nav_engine.experiments.executors.protocol import Executor, Started
-from c2nav_engine.experiments.executors.ray_cluster import RayExecutor
 from c2nav_engine.experiments.executors.slurm import SlurmExecutor
 from c2nav_engine.experiments.spec import Setting, Task
 from c2nav_engine.experiments.working import Finished
@@ -42,13 +41,6 @@ APART: dict[str, Callable[[], Executor]] = {
 }
 
 
-@pytest.fixture
-def ray_executor() -> Executor:
-    """A local Ray, ended with each run."""
-    pytest.importorskip("ray")
-    return RayExecutor(2, work=obliging)
-
-
 @pytest.mark.parametrize("name", [*IN_PROCESS, *APART])
 def test_every_task_is_run_once(name: str, tmp_path: Path) -> None:
     check_every_task_once((IN_PROCESS | APART)[name](), tmp_path)
@@ -62,12 +54,6 @@ def test_a_dead_worker_costs_no_task(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["one-worker-three-lanes", *APART])
 def test_closing_stops_the_workers(name: str, tmp_path: Path) -> None:
     check_closing((IN_PROCESS | APART)[name](), tmp_path)
-
-
-@pytest.mark.filterwarnings("default")  # Ray leaves sockets and pipes for the collector
-def test_ray_conforms(ray_executor: Executor, tmp_path: Path) -> None:
-    for place, check in enumerate((check_every_task_once, check_lost_workers, check_closing)):
-        check(ray_executor, tmp_path / str(place))
 
 
 def test_the_kit_bites(tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
 
+from c2nav_engine.experiments.columns import Row
 from c2nav_engine.experiments.executors.protocol import ATTEMPTS, Executor
 from c2nav_engine.experiments.spec import Setting, Task
 from c2nav_engine.experiments.working import Finished, Stopping
@@ -56,8 +57,16 @@ def obliging(task: Task, folder: Path, stop: Stopping) -> Finished | None:
         if stop():
             return None
         time.sleep(0.02)
-    row = {"episode_id": task.episode_id, "scene_id": task.scene_id, "variant": task.variant}
-    return Finished(task.key, {**row, "outcome": "stopped", "success": 1})
+    row: Row = {
+        "episode_id": task.episode_id,
+        "scene_id": task.scene_id,
+        "variant": task.variant,
+        "ranker": "obliging",
+        "seed": task.seed,
+        "outcome": "stopped",
+        "success": 1,
+    }
+    return Finished(task.key, row)
 
 
 def tries(folder: Path, task: Task) -> int:
