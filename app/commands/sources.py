@@ -8,12 +8,14 @@ from functools import partial
 from pathlib import Path
 
 from app.session.opened import Choice, Entry, Opened, Opening, Run
+from c2nav_engine.contract.question import Picture
 from c2nav_engine.episodes.profile import Profile, profile_named
 from c2nav_engine.errors import SceneError, UsageError
 from c2nav_engine.experiments.rankers import RANKERS, seats_for
 from c2nav_engine.experiments.spec import Setting
 from c2nav_engine.experiments.working import source_of
 from c2nav_engine.navigator.config import LoopConfig
+from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.navigator.variants import PRESETS
 from c2nav_engine.runner.exchange import Exchange, Override
 from c2nav_engine.runner.opening import OpenSpec, Workbench
@@ -141,8 +143,25 @@ def opened_traces(paths: Sequence[Path], setting: Setting) -> Opened:
 def _entry(path: Path) -> Entry:
     with open_trace(path) as trace:
         header, footer = trace.header, trace.footer
-    label = f"episode {header.episode.episode_id} · {header.variant} · {header.ranker}"
-    return Entry(str(path), label, outcome=footer.outcome.value)
+    success = footer.metrics.get("success")
+    return Entry(
+        str(path),
+        f"episode {header.episode.episode_id} · {header.variant} · {header.ranker}",
+        outcome=footer.outcome.value,
+        variant=header.variant,
+        success=None if success is None else bool(success),
+        thumbnail=partial(_first_picture, path),
+    )
+
+
+def _first_picture(path: Path) -> Picture | None:
+    """The front view of a trace's first decision; None where the trace holds no pictures."""
+    with open_trace(path) as trace:
+        request = trace.decision(0).request if trace.decision_count else None
+    facts = request.facts if isinstance(request, Ask) else None
+    pictures = [c.picture for c in facts.candidates if c.picture] if facts else []
+    shown = [picture for picture in pictures if picture.jpeg]
+    return shown[len(shown) // 2] if shown else None
 
 
 def _recorded(path: Path, scenes: Path | None) -> Opening:

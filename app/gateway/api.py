@@ -49,6 +49,15 @@ def api(session: Session, feed: Feed) -> APIRouter:
         headers = {"Cache-Control": _FOREVER, "ETag": f'"{sha256}"'}
         return Response(picture.jpeg, media_type="image/jpeg", headers=headers)
 
+    @router.get("/entry/{index}.jpg")
+    def entry(index: Annotated[int, Path(ge=0)]) -> Response:
+        """A small picture of something that can be opened."""
+        picture = session.thumbnail(index)
+        if picture is None:
+            return _problem(404, "expected an entry with a picture")
+        headers = {"Cache-Control": "no-cache", "ETag": f'"{picture.sha256}"'}
+        return Response(picture.jpeg, media_type="image/jpeg", headers=headers)
+
     return router
 
 

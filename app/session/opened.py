@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from c2nav_engine.contract.prompt import Ranked
+from c2nav_engine.contract.question import Picture
 from c2nav_engine.navigator.requests import Request
 from c2nav_engine.runner.exchange import Exchange, Override
 from c2nav_engine.runner.record import Footer, Header
@@ -62,13 +63,17 @@ class Entry:
         entry_id: Stable name.
         label: What a list calls it.
         outcome: How it ended, for a recorded one; "" otherwise.
-        thumbnail: Digest of a picture, if one is known; "" otherwise.
+        variant: Of a recorded one; "" otherwise.
+        success: Whether a recorded one stopped within the goal radius; None while unknown.
+        thumbnail: Fetches a small picture of it, or None; called once, when it is looked at.
     """
 
     entry_id: str
     label: str
     outcome: str = ""
-    thumbnail: str = ""
+    variant: str = ""
+    success: bool | None = None
+    thumbnail: Callable[[], Picture | None] | None = None
 
 
 @dataclass(frozen=True, slots=True)

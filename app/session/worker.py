@@ -19,6 +19,7 @@ from app.session.handling import handle
 from app.session.opened import Opened
 from app.session.pictures import Album
 from app.session.snapshot import Snapshot
+from c2nav_engine.contract.question import Picture
 from c2nav_engine.errors import C2NavError
 from c2nav_engine.world.scene import Scene
 
@@ -39,6 +40,7 @@ class Session:
         self.album = Album()
         self._clock = clock
         self._inbox: queue.Queue[Command | Message | None] = queue.Queue()
+        self._thumbnails: dict[str, Picture | None] = {}
         self._subscribers: list[Subscriber] = []
         self._closing = threading.Event()
         self._desk = Desk(opened, self.album, Hands(self._background, clock))
@@ -54,6 +56,17 @@ class Session:
     def scene(self) -> Scene | None:
         """The scene of what is open, once it came; `snapshot.scene_serial` says when it changed."""
         return self._desk.scene
+
+    def thumbnail(self, index: int) -> Picture | None:
+        """A small picture of an entry of what is open; fetched once."""
+        entries = self._published.chooser.entries
+        if index >= len(entries):
+            return None
+        entry = entries[index]
+        if entry.entry_id not in self._thumbnails:
+            fetch = entry.thumbnail
+            self._thumbnails[entry.entry_id] = None if fetch is None else fetch()
+        return self._thumbnails[entry.entry_id]
 
     def start(self) -> None:
         """Begin to work; the first pending decision is reached without a command."""

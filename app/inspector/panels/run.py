@@ -6,6 +6,7 @@ import viser
 from markupsafe import Markup
 
 from app.inspector import markup as m
+from app.inspector.panels import entries
 from app.inspector.panels.controls import Picker
 from app.inspector.panels.protocol import Dispatch, Html, Update
 from app.session import commands as c
@@ -21,6 +22,7 @@ def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:
     variant = Picker(gui, "variant", lambda chosen: dispatch(c.Open(variant=chosen)))
     ranker = Picker(gui, "ranker", lambda chosen: dispatch(c.Open(ranker=chosen)))
     block = Html(gui)
+    choose = entries.build(gui, dispatch)
 
     def update(snapshot: Snapshot) -> None:
         chooser = snapshot.chooser
@@ -28,6 +30,7 @@ def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:
         variant.show({v: v for v in chooser.variants}, chooser.choice.variant)
         ranker.show({r: r for r in chooser.rankers}, chooser.choice.ranker)
         block.show(_block(snapshot))
+        choose(snapshot)
 
     return update
 
