@@ -20,6 +20,7 @@ const PLAIN = {
   s: () => send("verdict", { value: "acceptable" }),
   w: () => send("verdict", { value: "wrong" }),
   c: () => send("verdict", { value: "cannot tell" }),
+  t: () => openTab("Review"),
   f: () => send("flag"),
   u: () => send("undo"),
   r: () => send("redo"),
@@ -27,6 +28,15 @@ const PLAIN = {
   z: () => window.dispatchEvent(new CustomEvent("c2-big", { detail: true })),
   "?": () => sheet.toggle(),
 };
+
+/** Show one of viser's dock tabs. */
+function openTab(name) {
+  const tabs = [...document.querySelectorAll("[data-dock-strip] [role=tab]")];
+  const tab = tabs.find((one) => one.textContent.trim() === name);
+  tab?.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0, pointerId: 1 }));
+  tab?.dispatchEvent(new PointerEvent("pointerup", { bubbles: true, button: 0, pointerId: 1 }));
+  tab?.click();
+}
 
 /** Whether a key belongs to something that is being typed into or worked with. */
 function taken(event) {

@@ -104,7 +104,7 @@ class WaitCard extends HTMLElement {
     return h(
       "div",
       { class: "card" },
-      h("span", {}, `Pictures would go to ${host}, outside this machine`),
+      h("span", {}, `Pictures would go to ${host}, outside this machine; scene licence: ${this.state.licence || "unknown"}`),
       h("button", { class: "go", onclick: () => send("consent", { allow: true }) }, "Allow"),
       h("button", { onclick: () => send("consent", { allow: false }) }, "Refuse"),
     );

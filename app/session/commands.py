@@ -92,6 +92,13 @@ class Jump(Command):
     to: Literal["first_suspect", "worst_suspect", "next_disagreement", "previous_disagreement"]
 
 
+class Seek(Command):
+    """Choose which disagreement `next_disagreement` looks for."""
+
+    type: Literal["seek"] = "seek"
+    kind: Literal["any", "orders", "person", "best"]
+
+
 # ---------------------------------------------------------------- answering
 
 
@@ -262,6 +269,7 @@ AnyCommand = Annotated[
     | RunTo
     | Open
     | Jump
+    | Seek
     | Press
     | Arrange
     | Tie

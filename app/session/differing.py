@@ -1,9 +1,22 @@
-"""Disagreements: between presentation orders, between model and person."""
+"""Disagreements: between presentation orders, model and person, committed and best."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Literal
+
 from app.session.decisions import Decision
+from app.session.snapshot import SUSPECT_M, Assessment
 from c2nav_engine.contract.outcome import ORDERS_DISAGREE, Abstention, Answered, Key, Ordering
+
+Kind = Literal["any", "orders", "person", "best"]
+
+KINDS: Mapping[Kind, str] = {
+    "any": "any disagreement",
+    "orders": "two presentation orders",
+    "person": "model and person",
+    "best": "committed and best offered",
+}
 
 
 def winner(outcome: Answered | None) -> Key | None:
@@ -28,6 +41,16 @@ def person_differs(decision: Decision) -> bool:
     return winner(decision.override.outcome) != winner(decision.ranked.outcome)
 
 
-def disagrees(decision: Decision) -> bool:
-    """Any of the kinds."""
-    return orders_differ(decision) or person_differs(decision)
+def best_differs(assessment: Assessment | None) -> bool:
+    """Whether something better was offered than what was committed."""
+    return assessment is not None and (assessment.regret_m or 0.0) >= SUSPECT_M
+
+
+def disagrees(decision: Decision, assessment: Assessment | None, kind: Kind) -> bool:
+    """Whether a decision shows a disagreement of a kind."""
+    found = {
+        "orders": orders_differ(decision),
+        "person": person_differs(decision),
+        "best": best_differs(assessment),
+    }
+    return any(found.values()) if kind == "any" else found[kind]

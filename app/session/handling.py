@@ -177,6 +177,7 @@ _HANDLERS: dict[type[c.Command], Handler] = {
     c.Consent: _consent,
     c.Hover: _view(hovered=lambda command: command.key),
     c.Camera: _view(camera=lambda command: command.mode),
+    c.Seek: _view(kind=lambda command: command.kind),
     c.Layer: _layer,
     c.Place: _place,
     c.ForgetPlace: lambda desk, _: desk.change(place=None),

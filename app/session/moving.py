@@ -7,7 +7,7 @@ from collections.abc import Callable
 from app.session import driving
 from app.session.decisions import LANES, Decision
 from app.session.desk import Desk
-from app.session.differing import disagrees
+from app.session.differing import KINDS, disagrees
 from app.session.snapshot import BAD_M, Snapshot
 
 STEP_S = 0.14
@@ -115,7 +115,12 @@ def jump(desk: Desk, to: str) -> None:
     here = desk.snapshot.here.decision
     decisions = desk.snapshot.story.decisions
     order = decisions[here + 1 :] if forward else decisions[:here][::-1]
-    _first(desk, order, disagrees, "No other decision with a disagreement that way")
+    kind = desk.snapshot.view.kind
+
+    def wanted(decision: Decision) -> bool:
+        return disagrees(decision, desk.snapshot.assessments.get(decision.number), kind)
+
+    _first(desk, order, wanted, f"None that way: {KINDS[kind]}")
 
 
 def _suspect(desk: Desk, *, worst: bool) -> None:

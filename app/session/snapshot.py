@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 from app.session.branches import Branch
 from app.session.decisions import Decision
@@ -134,11 +135,13 @@ class View:
 
     Attributes:
         camera: "free", "follow", "ego" or "top".
+        kind: Which disagreement the bracket keys look for.
         layers: Shown layers.
         hovered: Lit alternative; "" for none.
     """
 
     camera: str = "free"
+    kind: Literal["any", "orders", "person", "best"] = "any"
     layers: frozenset[str] = LAYERS_AT_FIRST
     hovered: str = ""
 

@@ -64,6 +64,7 @@ def state_json(snapshot: Snapshot) -> Json:
         "who": snapshot.who,
         "working": snapshot.working,
         "consent_to": snapshot.consent_to,
+        "licence": snapshot.story.header.scene_licence,
         "no_scene": snapshot.no_scene,
     }
 

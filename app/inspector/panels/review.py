@@ -8,8 +8,10 @@ import viser
 from markupsafe import Markup
 
 from app.inspector import markup as m
+from app.inspector.panels.controls import Picker
 from app.inspector.panels.protocol import Dispatch, Html, Update
 from app.session import commands as c
+from app.session.differing import KINDS
 from app.session.snapshot import Judgement, Snapshot
 
 Value = Literal["agree", "acceptable", "wrong", "cannot tell"]
@@ -28,6 +30,7 @@ TAGS = (
 
 def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:
     """Build the panel."""
+    seek = Picker(gui, "[ ] go to", lambda kind: dispatch(c.Seek.model_validate({"kind": kind})))
     block = Html(gui)
     remark = gui.add_text("note", "", multiline=True)
     save = gui.add_button("Keep the note", color="gray")
@@ -46,6 +49,7 @@ def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:
 
     def update(snapshot: Snapshot) -> None:
         block.show(_block(snapshot))
+        seek.show({str(kind): words for kind, words in KINDS.items()}, snapshot.view.kind)
         number = snapshot.here.decision
         if seen != [number]:
             seen[:] = [number]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import threading
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -26,38 +27,63 @@ _STOREY_M = 1.0
 
 
 class Mesh:
-    """Draws below /scene; the nodes are replaced when the storey or the scene changes."""
+    """Draws below /scene; the nodes are replaced when the storey or the scene changes.
+
+    Cutting and packing takes seconds for a large scan, so it runs on a thread of its own: panels
+    and the other layers go on meanwhile.
+    """
 
     def __init__(self, scene: viser.SceneApi, fetch: Callable[[], Scene | None]) -> None:
         """Remember where the loaded scene is found."""
         self._scene = scene
         self._fetch = fetch
         self._drawn: tuple[int, float] | None = None
+        self._shown = True
         self._handles: list[viser.SceneNodeHandle] = []
         self._grid = Group(scene, "/floor")
+        self._job: threading.Thread | None = None
 
     def update(self, snapshot: Snapshot) -> None:
         """Send the mesh once it is there, and again on another storey."""
         mesh = self._fetch()
-        shown = "scene" in snapshot.view.layers
+        self._show("scene" in snapshot.view.layers)
         missing = bool(snapshot.no_scene) and mesh is None
         start_m = snapshot.story.header.episode.start.position_m
         self._grid.draw(start_m if missing else None, lambda: self._floor(start_m))
-        for handle in self._handles:
+        floor_m = snapshot.story.track.footsteps[snapshot.here.step].pose.position_m[1]
+        if self._job is not None and self._job.is_alive():
+            return
+        if self._drawn is not None and self._drawn[0] != snapshot.scene_serial:
+            self._clear()
+        if mesh is not None and self._other_storey(floor_m):
+            self._drawn = (snapshot.scene_serial, floor_m)
+            self._job = threading.Thread(
+                target=self._replace, args=(mesh, floor_m + CUT_M), name="c2nav-mesh", daemon=True
+            )
+            self._job.start()
+
+    def _other_storey(self, floor_m: float) -> bool:
+        return self._drawn is None or abs(self._drawn[1] - floor_m) >= _STOREY_M
+
+    def _show(self, shown: bool) -> None:
+        self._shown = shown
+        for handle in list(self._handles):
             if handle.visible != shown:
                 handle.visible = shown
-        floor_m = snapshot.story.track.footsteps[snapshot.here.step].pose.position_m[1]
-        if mesh is None:
-            if self._drawn is not None and self._drawn[0] != snapshot.scene_serial:
-                self._clear()
-            return
-        if self._drawn is not None:
-            serial, drawn_m = self._drawn
-            if serial == snapshot.scene_serial and abs(drawn_m - floor_m) < _STOREY_M:
-                return
-        self._clear()
-        self._drawn = (snapshot.scene_serial, floor_m)
-        self._handles = list(self._send(mesh, floor_m + CUT_M))
+
+    def _replace(self, mesh: Scene, height_m: float) -> None:
+        try:
+            stale, self._handles = self._handles, []
+            kept: set[str] = set()
+            for handle in self._send(mesh, height_m):
+                kept.add(handle.name)
+                handle.visible = self._shown
+                self._handles.append(handle)
+            for handle in stale:
+                if handle.name not in kept:
+                    handle.remove()
+        except Exception:
+            log.exception("the scene could not be drawn")
 
     def _floor(self, start_m: Point) -> list[viser.SceneNodeHandle]:
         """A metre grid in place of a scene that is not to be had."""
