@@ -19,6 +19,7 @@ _NAMES = ("A", "B")
 _MAP_SHARE = 0.52
 _GAP_IN = 0.12
 _LEAD = 1.25
+_NAME_IN = 0.2  # right of the curve, for the name at its end
 _WIDE_IN = 5.0
 """From this width on, map and curve stand side by side."""
 
@@ -43,7 +44,7 @@ def draw_compare(
     left = map_in + _GAP_IN if wide else 0.0
     plot_in = max(1.0, ground.box[3] - BOTTOM_IN - 0.2) if wide else 1.1
     top = 0.2 if wide else ground.box[3] + 0.25
-    box = (left + LEFT_IN, top, width_in - left - LEFT_IN - 0.12, plot_in)
+    box = (left + LEFT_IN, top, width_in - left - LEFT_IN - _NAME_IN, plot_in)
     words = [
         wrapped(run_words(name, s), width_in - 0.4, style.small_pt, most=2)
         for name, s in zip(_NAMES, stories, strict=True)

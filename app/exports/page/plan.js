@@ -1,5 +1,5 @@
 // The map from above: floor and walls, the way walked by leg, goal, branches.
-import { go, here, state, subscribe, tale } from "./store.js";
+import { brief, go, here, state, subscribe, tale } from "./store.js";
 import { h, s } from "./look.js";
 
 const PAD = 34;
@@ -31,7 +31,7 @@ export class Plan {
     }
     const low = [0, 1].map((axis) => Math.min(...points.map((point) => point[axis])));
     const high = [0, 1].map((axis) => Math.max(...points.map((point) => point[axis])));
-    const top = PAD + 60;
+    const top = document.querySelector(".x-top").offsetHeight + PAD + 8;
     const scale = Math.min(
       (width - 2 * PAD) / Math.max(high[0] - low[0], 1),
       (height - top - PAD - 40) / Math.max(high[1] - low[1], 1),
@@ -74,7 +74,7 @@ export class Plan {
       const points = branch.track.map(([x, , z]) => [x, z]);
       parts.push(s("path", { class: "line other", d: this.path(points) }, s("title", {}, branch.branch.label)));
       const [x, y] = this.at(...points.at(-1));
-      parts.push(s("text", { class: "quiet halo", x: x + 7, y: y + 4 }, branch.branch.label));
+      parts.push(s("text", { class: "quiet halo", x: x - 7, y: y + 4, "text-anchor": "end" }, brief(branch)));
     }
     return parts;
   }

@@ -23,6 +23,9 @@ export function subscribe(listener) {
   return () => listeners.delete(listener);
 }
 
+/** A branch in a word or two, for labels among lines. */
+export const brief = ({ branch }) => (branch.fork >= 0 ? `fork at ${branch.fork}` : "recorded");
+
 const MISSING =
   "data:image/svg+xml," +
   encodeURIComponent(
