@@ -26,6 +26,12 @@ NEAR_SHARE = 0.008
 """[C] Smaller spots are not trusted to be the thing itself."""
 NEAR_HANGING_SHARE = 0.015
 """[C] A thing on a wall is near when it is at least so large."""
+HANGING_REACH = 0.6
+"""[C] Things on walls end above the camera or little below it."""
+LOW_TOP = 0.42
+"""[C] Things lower than the camera end below the horizon, but for some tolerance."""
+SOLID_FILL = 0.4
+"""[C] Furniture fills its outline; foliage does not."""
 FEW, SEVERAL, MANY = 1, 2, 3
 """The sketch's words for how far a leg went."""
 AMOUNT_SUPPORT = {0: 0.1, FEW: -0.5, SEVERAL: -0.2, MANY: 0.35}
@@ -61,19 +67,28 @@ def next_leg_support(now: Pixels, *, legs: tuple[LegWords, LegWords], sketch: st
     this, following = legs
     support = AMOUNT_SUPPORT[amount_in_leg(sketch)]
     if this.target is not None:
-        seen = _visibility(now.spot(this.target.colour), this.target)
+        seen = _visibility(now, this.target)
         support += 0.4 if is_near(now, this.target) else -0.4 * seen
     if following.target is not None:
-        support += 0.5 * _visibility(now.spot(following.target.colour), following.target)
+        support += 0.5 * _visibility(now, following.target)
     return support
 
 
 def is_near(view: Pixels, landmark: Landmark) -> bool:
-    """Whether the landmark's colour is there, large enough, and low enough where it stands."""
-    spot = view.spot(landmark.colour)
+    """Whether the landmark's colour is there, large enough, and where such a thing can be."""
+    spot = seen_spot(view, landmark)
     if landmark.hanging:
         return spot.share >= NEAR_HANGING_SHARE
     return spot.share >= NEAR_SHARE and spot.reach >= NEAR_REACH
+
+
+def seen_spot(view: Pixels, landmark: Landmark) -> Spot:
+    """The landmark's patch, or none when its place or shape is not that of such a thing."""
+    spot = view.spot(landmark.colour)
+    misplaced = (landmark.hanging and spot.reach > HANGING_REACH) or (
+        landmark.low and spot.top < LOW_TOP
+    )
+    return Spot() if misplaced or spot.fill < SOLID_FILL else spot
 
 
 def arrived_here(now: Pixels, leg: LegWords, *, sketch: str) -> bool:
@@ -96,10 +111,7 @@ def journey_covered(now: Pixels, leg: LegWords, *, sketch: str) -> bool:
 
 def destination_score(view: Pixels, leg: LegWords) -> float:
     """How much a view shows of the destination; 0 when the leg names nothing to look for."""
-    if leg.target is None:
-        return 0.0
-    spot = view.spot(leg.target.colour)
-    return _visibility(spot, leg.target) + 0.5 * spot.reach * (spot.share > 0.0)
+    return 0.0 if leg.target is None else _visibility(view, leg.target)
 
 
 def action_scores(now: Pixels, *, leg: LegWords, sketch: str) -> dict[str, float]:
@@ -110,9 +122,9 @@ def action_scores(now: Pixels, *, leg: LegWords, sketch: str) -> dict[str, float
         "right": _side_prior("to the right", leg, sketch),
     }
     if leg.target is not None:
-        spot = now.spot(leg.target.colour)
-        pointed = "forward" if abs(spot.across) < 0.5 else "left" if spot.across < 0 else "right"
-        scores[pointed] += 1.5 * _visibility(spot, leg.target)
+        across = seen_spot(now, leg.target).across
+        pointed = "forward" if abs(across) < 0.5 else "left" if across < 0.0 else "right"
+        scores[pointed] += 1.5 * _visibility(now, leg.target)
     return scores
 
 
@@ -122,17 +134,17 @@ def words_of_leg(legs: Sequence[str], index: int) -> LegWords:
 
 
 def _attraction(view: Pixels, landmark: Landmark) -> float:
-    spot = view.spot(landmark.colour)
-    central = 1.0 - 0.4 * abs(spot.across)
-    return landmark.weight * central * _visibility(spot, landmark)
+    central = 1.0 - 0.4 * abs(seen_spot(view, landmark).across)
+    return landmark.weight * central * _visibility(view, landmark)
 
 
-def _visibility(spot: Spot, landmark: Landmark) -> float:
+def _visibility(view: Pixels, landmark: Landmark) -> float:
     """0 (not seen) to 1; a patch over half the picture is a wall or a floor, not a thing."""
+    share = seen_spot(view, landmark).share
     trust = 0.25 if landmark.colour in FAINT else 1.0
-    if spot.share > 0.5:
+    if share > 0.5:
         trust *= 0.3
-    return trust * min(1.0, math.sqrt(spot.share / 0.05))
+    return trust * min(1.0, math.sqrt(share / 0.05))
 
 
 def _side_prior(side: str, leg: LegWords, sketch: str) -> float:

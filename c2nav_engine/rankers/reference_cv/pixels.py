@@ -34,12 +34,16 @@ class Spot:
     Attributes:
         share: Of the picture, 0 when there is none worth naming.
         across: Horizontal middle, −1 at the left edge to 1 at the right.
-        reach: Row of its lower edge over the height; 1 touches the bottom, 0.5 is the horizon.
+        top: Row of its upper edge over the height; 0.5 is the horizon of a level camera.
+        reach: Row of its lower edge over the height; 1 touches the bottom.
+        fill: Share of its bounding box that it fills; leaves and stripes fill little.
     """
 
     share: float = 0.0
     across: float = 0.0
+    top: float = 0.0
     reach: float = 0.0
+    fill: float = 0.0
 
 
 class Pixels:
@@ -65,11 +69,16 @@ class Pixels:
             return Spot()
         largest = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
         rows, columns = opened.shape
-        share = float(stats[largest, cv2.CC_STAT_AREA]) / (rows * columns)
-        if share < _SPOT_FLOOR:
+        _, top, width, height, area = (float(value) for value in stats[largest])
+        if area < _SPOT_FLOOR * rows * columns:
             return Spot()
-        lower = float(stats[largest, cv2.CC_STAT_TOP] + stats[largest, cv2.CC_STAT_HEIGHT])
-        return Spot(share, 2.0 * float(centres[largest][0]) / columns - 1.0, lower / rows)
+        return Spot(
+            share=area / (rows * columns),
+            across=2.0 * float(centres[largest][0]) / columns - 1.0,
+            top=top / rows,
+            reach=(top + height) / rows,
+            fill=area / (width * height),
+        )
 
     @functools.cached_property
     def depth_of_view(self) -> float:
@@ -120,6 +129,10 @@ class _Range:
 
 _COLOURS: dict[str, _Range] = {
     "red": _Range((171, 6), (130, 255), (70, 255)),
+    "crimson": _Range((165, 178), (140, 255), (60, 220)),
+    "coral": _Range((2, 10), (110, 190), (170, 255)),
+    "mint": _Range((60, 85), (30, 110), (150, 255)),
+    "plum": _Range((145, 165), (70, 255), (40, 170)),
     "maroon": _Range((165, 8), (90, 255), (40, 140)),
     "orange": _Range((7, 18), (140, 255), (150, 255)),
     "brown": _Range((4, 20), (60, 255), (40, 165)),

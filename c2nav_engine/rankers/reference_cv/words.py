@@ -1,7 +1,8 @@
 """What the words of a leg ask to look for: coloured things, turns, and what to leave behind.
 
 The vocabulary is common English colour names and a few things that have a colour of their own.
-Every other word is ignored: this ranker does not know what a sofa looks like, only what is red.
+Of nouns it knows only which hang on walls and which are low: it does not know what a sofa looks
+like, but that it is red, and no taller than the camera.
 """
 
 from __future__ import annotations
@@ -12,6 +13,11 @@ from dataclasses import dataclass
 COLOUR_WORDS = {
     "red": "red",
     "scarlet": "red",
+    "crimson": "crimson",
+    "coral": "coral",
+    "salmon": "coral",
+    "mint": "mint",
+    "plum": "plum",
     "maroon": "maroon",
     "burgundy": "maroon",
     "orange": "orange",
@@ -49,7 +55,12 @@ FAINT = frozenset({"white", "grey", "black", "brown"})
 HANGING = frozenset(
     ["painting", "paintings", "picture", "pictures", "poster", "photo", "clock", "mirror", "frame"]
 )
-"""Things on walls: their lower edge says nothing about how near they are."""
+"""Things on walls: they end above the eye's height, and their lower edge tells no distance."""
+_SEATS = ("sofa", "couch", "bench", "ottoman", "beanbag", "armchair", "chair", "stool", "pouf")
+LOW = frozenset(
+    [*_SEATS, "bed", "chest", "rug", "mat", "runner", "table", "suitcase", "ball", "basket"]
+)
+"""Things lower than the camera: they end below the horizon."""
 
 _COLOUR = re.compile(rf"\b(?:{'|'.join([*COLOUR_WORDS, *COLOURED_THINGS])})\b")
 _LEAVING = re.compile(
@@ -76,12 +87,22 @@ class Landmark:
         colour: One of the colours that `pixels` knows.
         weight: 1 for what the leg leads to, less for what it mentions before, negative for what
             it leaves behind.
-        hanging: Whether it hangs on a wall rather than stands on the floor.
+        noun: The word after the colour.
     """
 
     colour: str
     weight: float
-    hanging: bool = False
+    noun: str = ""
+
+    @property
+    def hanging(self) -> bool:
+        """Whether it hangs on a wall rather than stands on the floor."""
+        return self.noun in HANGING
+
+    @property
+    def low(self) -> bool:
+        """Whether it is lower than the camera."""
+        return self.noun in LOW
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +154,7 @@ def read_leg(leg: str) -> LegWords:
         Landmark(
             _colour(match.group()),
             _weight(folded, match, last=match is chosen[-1]),
-            hanging=_noun(folded, match) in HANGING,
+            _noun(folded, match),
         )
         for match in chosen
     )
