@@ -1,0 +1,104 @@
+"""Every panel in light and dark, as pictures for the docs and the README.
+
+python -m tests.helpers.gallery TRACE --scenes DIR --out docs/gallery
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+
+from app.commands.sources import opened_traces
+from c2nav_engine.experiments.spec import Setting
+from tests.helpers.page import Visit, chromium, inspector, picture, visit
+
+Arrange = Callable[[Visit], None]
+
+
+def tab(*names: str) -> Arrange:
+    """Show dock tabs."""
+
+    def arrange(seen: Visit) -> None:
+        for name in names:
+            seen.page.get_by_role("tab", name=name, exact=True).click()
+
+    return arrange
+
+
+def go(decision: int) -> Arrange:
+    """Stand at a decision."""
+
+    def arrange(seen: Visit) -> None:
+        seen.page.evaluate(f"c2nav.send('go', {{decision: {decision}}})")
+        seen.until(f"s.place.decision === {decision}")
+
+    return arrange
+
+
+def send(command: str) -> Arrange:
+    """Send a command as the page would."""
+    return lambda seen: seen.page.evaluate(f"c2nav.send({command})")
+
+
+def then(*steps: Arrange) -> Arrange:
+    """One after the other."""
+
+    def arrange(seen: Visit) -> None:
+        for step in steps:
+            step(seen)
+
+    return arrange
+
+
+def first(seen: Visit, lane: int, *, after: int = 0) -> int:
+    """The first decision of a lane, else the last decision."""
+    marks = seen.state()["timeline"]["marks"]
+    found = [m["decision"] for m in marks if m["lane"] == lane and m["decision"] >= after]
+    return found[0] if found else marks[-1]["decision"]
+
+
+def shots(seen: Visit) -> dict[str, Arrange]:
+    """Name → how to get there, in an order that needs no way back."""
+    marks = seen.state()["timeline"]["marks"]
+    half = marks[len(marks) // 2]["decision"]
+    election = first(seen, 0, after=half // 2)
+    return {
+        "decision": then(
+            go(election), send("'layer', {name: 'goal', on: true}"), tab("Decision", "Run")
+        ),
+        "transition-sketch": then(go(first(seen, 1, after=half // 3)), tab("Sketch", "Branches")),
+        "arriving-ladder": then(go(marks[-1]["decision"]), tab("Ladder", "Review")),
+        "look-back": then(tab("Look-back", "Export")),
+        "asked-place": then(
+            go(election),
+            tab("Decision", "Run"),
+            send("'place', {goal: true}"),
+            lambda seen: seen.until("s.timeline.place"),
+        ),
+        "follow": then(send("'forget_place'"), send("'camera', {mode: 'follow'}")),
+        "keys": then(send("'camera', {mode: 'free'}"), lambda seen: seen.page.keyboard.press("?")),
+    }
+
+
+def main() -> None:
+    """Make the gallery."""
+    reader = argparse.ArgumentParser(description=__doc__)
+    reader.add_argument("trace", type=Path)
+    reader.add_argument("--scenes", default="")
+    reader.add_argument("--out", type=Path, required=True)
+    given = reader.parse_args()
+    setting = Setting(source="builtin", scenes=given.scenes, profile="vlnce")
+    opened = opened_traces((given.trace,), setting)
+    with chromium() as browser, inspector(opened) as (url, _):
+        for dark in (False, True):
+            with visit(browser, url, dark=dark) as seen:
+                seen.page.wait_for_timeout(8000)  # the mesh of a large scene
+                for name, arrange in shots(seen).items():
+                    theme = "dark" if dark else "light"
+                    picture(given.out, f"{name}-{theme}", seen, arrange=arrange)
+                seen.page.keyboard.press("?")
+
+
+if __name__ == "__main__":
+    main()
