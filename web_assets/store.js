@@ -55,10 +55,18 @@ export function follow() {
 
 const ANSWERING = new Set(["press", "arrange", "tie", "none", "take_back", "clear", "commit"]);
 
-/** Send a command; an answer carries the id of the state it answers. */
-export async function send(type, fields = {}) {
+// Commands go out one after the other: two keys in quick succession must arrive in that order.
+let line = Promise.resolve();
+
+/** Send a command; an answer carries the id of the state that it was given to. */
+export function send(type, fields = {}) {
   const body = { type, tab, ...fields };
   if (ANSWERING.has(type)) body.id = state.id;
+  line = line.then(() => post(body));
+  return line;
+}
+
+async function post(body) {
   try {
     const answer = await fetch(at("api/commands"), {
       method: "POST",
