@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -82,14 +83,25 @@ def scene_ids(folder: Path) -> list[str]:
     """The scans below a folder, by their place in it; raises `SceneError` when there is none."""
     found = sorted(
         str(path.relative_to(folder))
-        for suffix in (".glb", ".gltf")
-        for path in folder.rglob(f"*{suffix}")
-        if not path.stem.endswith(SEMANTICS)
+        for path in _files(folder)
+        if path.suffix.lower() in (".glb", ".gltf") and not path.stem.endswith(SEMANTICS)
     )
     if not found:
         message = f"expected scenes (.glb) below {folder}, found none; name the folder of scans"
         raise SceneError(message)
     return found
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    """Files below a folder, through links, for scans often lie on another disk; no loops."""
+    seen: set[str] = set()
+    for here, folders, files in os.walk(folder, followlinks=True):
+        real = os.path.realpath(here)
+        if real in seen:
+            folders.clear()
+            continue
+        seen.add(real)
+        yield from (Path(here) / file for file in files)
 
 
 def _row(scene_id: str, worlds: Worlds) -> Prepared:
@@ -99,7 +111,7 @@ def _row(scene_id: str, worlds: Worlds) -> Prepared:
         shown = display_scene(world.scene, cache_folder())
         _ask(world.surface)
     except C2NavError as error:
-        return Prepared(scene_id, problem=f"{scene_id}: {error}")
+        return Prepared(scene_id, problem=str(error))
     return Prepared(
         scene_id=scene_id,
         triangles=len(world.scene.triangles),

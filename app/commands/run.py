@@ -117,8 +117,7 @@ def spec_of(
     source = source_of(setting)
     chosen = source.chosen(ids(episodes))
     if find_scenes:
-        for scene_id in dict.fromkeys(episode.scene_id for episode in chosen):
-            source.scene_file(scene_id)
+        source.require_scenes(chosen)
     return RunSpec(
         setting=setting,
         episodes=tuple(episode.episode_id for episode in chosen),

@@ -76,7 +76,7 @@ def prepare(
     console.print(table)
     for row in rows:
         if row.problem:
-            console.print(row.problem, markup=False, soft_wrap=True)
+            console.print(f"{row.scene_id}: {row.problem}", markup=False, soft_wrap=True)
     return int(any(row.problem for row in rows))
 
 

@@ -22,8 +22,9 @@ LIGHT_TRIANGLES = 1_000_000
 REGION_M = 4.0
 """Side of the regions that a mesh is split into, so that it arrives piece by piece [C]."""
 
-_FIRST_CELL_M = 0.01
 _LEAST_GROWTH = 1.15
+_SAMPLED = 200_000
+"""Triangles that the area is estimated from."""
 
 
 def lightened(scene: Scene, *, triangles: int = LIGHT_TRIANGLES) -> Scene:
@@ -35,7 +36,7 @@ def lightened(scene: Scene, *, triangles: int = LIGHT_TRIANGLES) -> Scene:
         scene: Any scene.
         triangles: The most that may stay; at least 1.
     """
-    cell_m = _FIRST_CELL_M
+    cell_m = _cell_for(scene, triangles)
     kept, corners, vertices_m, colours = _untouched(scene)
     while len(kept) > triangles:
         cell_of, count = _cells(scene.vertices_m, cell_m)
@@ -56,6 +57,14 @@ def lightened(scene: Scene, *, triangles: int = LIGHT_TRIANGLES) -> Scene:
         colours=colours,
         licence=scene.licence,
     )
+
+
+def _cell_for(scene: Scene, triangles: int) -> float:
+    """A cell that leaves about so many: a smooth surface crosses one cell in two triangles."""
+    corners_m = scene.vertices_m[scene.triangles[:: max(1, len(scene.triangles) // _SAMPLED)]]
+    cross = np.cross(corners_m[:, 1] - corners_m[:, 0], corners_m[:, 2] - corners_m[:, 0])
+    area_m2 = float(np.linalg.norm(cross, axis=1).mean()) / 2.0 * len(scene.triangles)
+    return math.sqrt(2.0 * area_m2 / triangles)
 
 
 def _untouched(

@@ -54,7 +54,9 @@ def _listed(names: list[str]) -> str:
     """The likeliest places whole; of the other formats, the place that is tried first."""
     suffix = PurePosixPath(names[0]).suffix
     likeliest = [name for name in names if PurePosixPath(name).suffix == suffix]
-    others = {PurePosixPath(name).suffix: name for name in reversed(names)}
+    others: dict[str, str] = {}
+    for name in names:
+        others.setdefault(PurePosixPath(name).suffix, name)
     others.pop(suffix)
     return ", ".join([*likeliest, *others.values()])
 
