@@ -64,6 +64,9 @@ def run(
     depth_noise: Annotated[
         float, tyro.conf.arg(help="Deviation of depths, as a fraction of them.")
     ] = 0.0,
+    parser: Annotated[
+        str, tyro.conf.arg(help="Route parser: english, or model (the ranker's server).")
+    ] = "english",
     sliding: Annotated[bool, tyro.conf.arg(help="Whether blocked moves slide.")] = True,
     resume: Annotated[bool, tyro.conf.arg(help="Finish what is missing.")] = False,
     json: JsonOpt = False,
@@ -80,6 +83,7 @@ def run(
         odometry_noise=odometry_noise,
         depth_noise=depth_noise,
         sliding=sliding,
+        parser=parser,
     )
     spec = spec_of(setting, variants=variants, episodes=episodes, seeds=seeds)
     chosen = executor_for(executor, setting, workers=workers, options=key_values(executor_opt))

@@ -9,8 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from c2nav_engine.contract.route_model import Complete
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.asking import asking_from
+from c2nav_engine.rankers.completing import completion_through
 from c2nav_engine.rankers.protocol import Adapter
 from c2nav_engine.rankers.wrapper import AskingRanker
 from c2nav_engine.runner.opening import Seat, SeatFor
@@ -58,6 +60,16 @@ def ranker_for(name: str, options: Options | None = None) -> AskingRanker:
         raise UsageError(message)
     asking, rest = asking_from(options or {})
     return AskingRanker(seats_for_name.adapter(rest), asking)
+
+
+def completion_for(name: str, options: Options) -> Complete:
+    """A ranker's language model as a function; raises `UsageError` where it has none."""
+    entry = RANKERS.get(name)
+    if entry is None or entry.adapter is None:
+        message = f"expected a ranker with a language model to parse routes, came {name!r}"
+        raise UsageError(message)
+    asking, rest = asking_from(options)
+    return completion_through(entry.adapter(rest), asking)
 
 
 def _shared(adapter: Callable[[Options], Adapter]) -> Callable[[Options], SeatFor]:

@@ -12,6 +12,7 @@ from pathlib import Path
 from c2nav_engine.episodes.profile import profile_named
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.asking import ASKING_OPTIONS
+from c2nav_engine.experiments.parsing import parser_named
 from c2nav_engine.experiments.rankers import DEFAULT_RANKER, RANKERS
 from c2nav_engine.navigator.variants import preset
 
@@ -31,6 +32,7 @@ class Setting:
         odometry_noise: Standard deviation of steps and turns, as a fraction of them.
         depth_noise: Standard deviation of depths, as a fraction of them.
         sliding: Whether blocked moves slide.
+        parser: Route parser; `model` asks the ranker's own server, once a text.
     """
 
     source: str
@@ -43,10 +45,12 @@ class Setting:
     odometry_noise: float = 0.0
     depth_noise: float = 0.0
     sliding: bool = True
+    parser: str = "english"
 
     def check(self) -> None:
         """Reject unknown names before anything starts; raises `UsageError`."""
         profile_named(self.profile)
+        parser_named(self.parser)
         if self.ranker not in RANKERS:
             message = f"expected a ranker ({', '.join(RANKERS)}), came {self.ranker!r}"
             raise UsageError(message)

@@ -12,7 +12,8 @@ from pathlib import Path
 from c2nav_engine.episodes.profile import profile_named
 from c2nav_engine.errors import C2NavError, InputError, RankerStopped
 from c2nav_engine.experiments.columns import Row
-from c2nav_engine.experiments.rankers import seats_for
+from c2nav_engine.experiments.parsing import parse_for
+from c2nav_engine.experiments.rankers import completion_for, seats_for
 from c2nav_engine.experiments.spec import Setting, Task
 from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.runner.episode_run import EpisodeRun
@@ -82,7 +83,7 @@ def source_of(setting: Setting) -> Source:
     )
 
 
-def workbench_of(setting: Setting) -> Workbench:
+def workbench_of(setting: Setting, run: Path) -> Workbench:
     """Everything the tasks of a setting share in one process, made once.
 
     Its renderers keep to one thread: a worker is one core, whatever else the machine does.
@@ -95,6 +96,11 @@ def workbench_of(setting: Setting) -> Workbench:
         profile=profile,
         seat_for=seats_for(setting.ranker, setting.ranker_options),
         recorder_for=TraceWriter,
+        parse=parse_for(
+            setting.parser,
+            lambda: completion_for(setting.ranker, setting.ranker_options),
+            run / "legs",
+        ),
         noise=NoiseConfig(
             translation=setting.odometry_noise,
             rotation=setting.odometry_noise,
@@ -124,7 +130,7 @@ class Simulating:
         """Run one task to its end, whatever it is."""
         try:
             with self._turn:
-                bench = self._bench(task.setting)
+                bench = self._bench(task.setting, run)
             return self._work(bench, task, run, stop)
         except C2NavError as error:
             return _ended(Finished.failed(task, str(error)), error)
@@ -132,10 +138,10 @@ class Simulating:
             lines = "".join(traceback.format_exception(error))
             return Finished.failed(task, f"unexpected {type(error).__name__}: {error}\n{lines}")
 
-    def _bench(self, setting: Setting) -> Workbench:
-        name = f"{setting.identity}/{sorted(setting.ranker_options.items())}"
+    def _bench(self, setting: Setting, run: Path) -> Workbench:
+        name = f"{run}/{setting.identity}/{sorted(setting.ranker_options.items())}"
         if name not in self._benches:
-            self._benches = {name: workbench_of(setting)}
+            self._benches = {name: workbench_of(setting, run)}
         return self._benches[name]
 
     def _work(self, bench: Workbench, task: Task, run: Path, stop: Stopping) -> Finished | None:
