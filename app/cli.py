@@ -27,6 +27,7 @@ COMMANDS = (
     "question",
     "fork",
     "figure",
+    "study",
     "trace",
     "turning",
     "bench",

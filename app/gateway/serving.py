@@ -19,6 +19,7 @@ from app.gateway.api import api
 from app.gateway.assets import Asset, assets
 from app.gateway.doors import Doors
 from app.gateway.feed import Feed
+from app.gateway.judging import mount_judging
 from app.gateway.shell_page import ShellPage
 from app.inspector.shell import Shell
 from app.session.opened import Opened
@@ -127,6 +128,7 @@ def serve(
     session.start()
     try:
         app = application(session, shell, names=_names(host))
+        mount_judging(app, [entry.entry_id for entry in opened.entries])
         config = uvicorn.Config(
             app,
             ws="websockets-sansio",

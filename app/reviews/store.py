@@ -103,13 +103,15 @@ class Store:
     """An open store; safe to use from several threads.
 
     Args:
-        path: The file; made where it is not there.
+        path: The file; made where it is not there, in a folder that is.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self._lock = threading.RLock()
-        path.parent.mkdir(parents=True, exist_ok=True)
+        if not path.parent.is_dir():
+            message = f"expected the folder of a run, came {path.parent}, which is not there"
+            raise UsageError(message)
         self._connection = sqlite3.connect(
             path, timeout=_PATIENCE_S, check_same_thread=False, isolation_level=None
         )
