@@ -24,6 +24,7 @@ from app.commands.options import (
     words,
 )
 from app.commands.output import print_json
+from app.commands.run_estimate import tell_estimate
 from app.commands.run_words import error_lines, progress_bar, tell_rows
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.batch import BatchResult, run_batch
@@ -69,6 +70,9 @@ def run(
     ] = "english",
     sliding: Annotated[bool, tyro.conf.arg(help="Whether blocked moves slide.")] = True,
     resume: Annotated[bool, tyro.conf.arg(help="Finish what is missing.")] = False,
+    dry_run: Annotated[
+        bool, tyro.conf.arg(help="Say what it would take, and run nothing.")
+    ] = False,
     json: JsonOpt = False,
 ) -> int:
     """Run episodes and write traces, `episodes.csv` and `summary.json`."""
@@ -85,8 +89,12 @@ def run(
         sliding=sliding,
         parser=parser,
     )
-    spec = spec_of(setting, variants=variants, episodes=episodes, seeds=seeds)
+    spec = spec_of(
+        setting, variants=variants, episodes=episodes, seeds=seeds, find_scenes=not dry_run
+    )
     chosen = executor_for(executor, setting, workers=workers, options=key_values(executor_opt))
+    if dry_run:
+        return tell_estimate(spec, out, workers=workers, json=json)
     with _polite(), progress_bar(quiet=json) as tell:
         result = run_batch(spec, out, chosen, resume=resume, progress=tell)
     if json:

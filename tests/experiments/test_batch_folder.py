@@ -174,7 +174,7 @@ def test_a_bug_in_one_episode_is_that_episodes_error(
 ) -> None:
     from c2nav_engine.experiments import working
 
-    def broken(setting: Setting) -> object:
+    def broken(setting: Setting, run: Path) -> object:
         raise ZeroDivisionError("a bug")
 
     monkeypatch.setattr(working, "workbench_of", broken)

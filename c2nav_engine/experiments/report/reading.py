@@ -13,7 +13,7 @@ from c2nav_engine.experiments.asking import asking_from
 from c2nav_engine.experiments.columns import Row, read_rows
 from c2nav_engine.experiments.rankers import RANKERS
 
-_SENSING = ("odometry_noise", "depth_noise", "sliding")
+_USUAL = {"odometry_noise": 0.0, "depth_noise": 0.0, "sliding": True, "parser": "english"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class Protocol:
         headings: Heading version of the starts.
         ground_truth: Name of the nDTW reference.
         profile: Embodiment profile.
-        sensing: Noise and sliding options that differ from the default, as words.
+        sensing: Noise, sliding and parser where they differ from the default, as words.
     """
 
     source: str
@@ -112,6 +112,5 @@ def _run(folder: Path, manifest: dict[str, Any], rows: tuple[Row, ...]) -> Run:
 
 
 def _sensing(setting: Mapping[str, Any]) -> str:
-    usual = {"odometry_noise": 0.0, "depth_noise": 0.0, "sliding": True}
-    odd = [name for name in _SENSING if setting.get(name, usual[name]) != usual[name]]
+    odd = [name for name, usual in _USUAL.items() if setting.get(name, usual) != usual]
     return ", ".join(f"{name.replace('_', ' ')} {setting[name]}" for name in odd)
