@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from app.figures.plan import Plan, Ring
-from app.figures.sheet import Box, Sheet, Spot
+from app.figures.sheet import Box, Sheet, Spot, width_of
 from app.figures.style import BAND, FLOOR, GREEN, INK, QUIET, WALL, WHITE, Style
 from app.session.story import Story
 from c2nav_engine.geometry import Point
@@ -167,7 +167,10 @@ def draw_goal(sheet: Sheet, ground: Ground, story: Story, *, style: Style) -> No
         stroke = [(x - along, y - down), (x + along, y + down)]
         sheet.line(stroke, colour=GREEN, width_pt=1.6)
     words = f"goal, {episode.goal_radius_m:g} m"
-    sheet.text(words, (x + 0.07, y - 0.05), size_pt=style.small_pt, halo=True)
+    left, _, width, _ = ground.box
+    fits = x + 0.07 + width_of(words, style.small_pt) <= left + width
+    at = (x + 0.07 if fits else x - 0.07, max(y - 0.05, 0.1))
+    sheet.text(words, at, size_pt=style.small_pt, anchor="left" if fits else "right", halo=True)
 
 
 def draw_start(sheet: Sheet, ground: Ground, story: Story, *, style: Style) -> None:
