@@ -110,4 +110,5 @@ def ended_words(footer: Footer | None) -> str:
         EpisodeOutcome.ERROR: "error",
         EpisodeOutcome.INTERRUPTED: "interrupted",
     }[footer.outcome]
-    return f"{words} {'✓' if footer.metrics.get('success') else '✕'}"
+    # The sign never stands alone on the next line.
+    return f"{words}\u00a0{'✓' if footer.metrics.get('success') else '✕'}"

@@ -63,13 +63,12 @@ def shots(seen: Visit) -> dict[str, Arrange]:
     marks = seen.state()["timeline"]["marks"]
     half = marks[len(marks) // 2]["decision"]
     election = first(seen, 0, after=half // 2)
-    return {
+    found: dict[str, Arrange] = {
         "decision": then(
             go(election), send("'layer', {name: 'goal', on: true}"), tab("Decision", "Run")
         ),
         "transition-sketch": then(go(first(seen, 1, after=half // 3)), tab("Sketch", "Branches")),
         "arriving-ladder": then(go(marks[-1]["decision"]), tab("Ladder", "Review")),
-        "look-back": then(tab("Look-back", "Export")),
         "asked-place": then(
             go(election),
             tab("Decision", "Run"),
@@ -79,6 +78,10 @@ def shots(seen: Visit) -> dict[str, Arrange]:
         "follow": then(send("'forget_place'"), send("'camera', {mode: 'follow'}")),
         "keys": then(send("'camera', {mode: 'free'}"), lambda seen: seen.page.keyboard.press("?")),
     }
+    looks = [m["decision"] for m in marks if "look-back" in m["words"]]
+    if looks:
+        found["look-back"] = then(go(looks[0]), tab("Look-back", "Export"))
+    return found
 
 
 def main() -> None:
@@ -97,7 +100,6 @@ def main() -> None:
                 for name, arrange in shots(seen).items():
                     theme = "dark" if dark else "light"
                     picture(given.out, f"{name}-{theme}", seen, arrange=arrange)
-                seen.page.keyboard.press("?")
 
 
 if __name__ == "__main__":

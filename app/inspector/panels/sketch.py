@@ -69,6 +69,12 @@ def _support(sketch: SketchState) -> str:
     return f"{sketch.support} in a row for the next leg"
 
 
+def _moved(forward_m: float, right_m: float) -> str:
+    """Displacement in the leg's start frame."""
+    ahead, aside = ("ahead", "back")[forward_m < 0.0], ("right", "left")[right_m < 0.0]
+    return f"{abs(forward_m):.1f} m {ahead}, {abs(right_m):.1f} m {aside}"
+
+
 def _row(sketch: SketchState) -> list[str | Markup]:
     entry = sketch.entry
     right_m, forward_m = entry.displacement_m
@@ -76,9 +82,7 @@ def _row(sketch: SketchState) -> list[str | Markup]:
     return [
         str(entry.cycle),
         str(entry.leg + 1),
-        Markup("{}<small>{:+.1f} m ahead, {:+.1f} m right</small>").format(
-            entry.words, forward_m, right_m
-        ),
+        Markup("{}<small>{}</small>").format(entry.words, _moved(forward_m, right_m)),
         entry.turning,
         entry.cue,
         m.picture(thumbnail.sha256, alt="", size_px=48) if thumbnail else "",
