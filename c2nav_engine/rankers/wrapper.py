@@ -27,7 +27,7 @@ from c2nav_engine.contract.outcome import (
 from c2nav_engine.contract.presentation import presentations
 from c2nav_engine.contract.prompt import Prompt, Query, Ranked, Reply
 from c2nav_engine.contract.question import Question
-from c2nav_engine.contract.render import render
+from c2nav_engine.contract.render import render, render_as
 from c2nav_engine.errors import RankerUnavailable
 from c2nav_engine.rankers.accounting import AskingConfig, Spent
 from c2nav_engine.rankers.cache import AnswerCache
@@ -90,19 +90,17 @@ class AskingRanker:
         self.start()
         shown = presentations(question, once=self._adapter.asks_once)
         asked = [render(question, order) for order in range(len(shown))]
-        queries: list[Query] = []
-        final: dict[int, Answered] = {}
-        while asked:
-            finished = self._ask_until_answered(asked, queries)
-            final.update({query.prompt.order: query.outcome for query in finished})
-            asked = [
-                render(question, query.prompt.order, repair=query.prompt.repair + 1)
-                for query in finished
-                if isinstance(query.outcome, REPAIRABLE)
-                and query.prompt.repair < self._config.repairs
-            ]
+        queries, final = self._settle(asked)
         outcome = aggregate(question, list(final.values()))
         return Ranked(outcome, tuple(queries), self.name, self._privileged)
+
+    def put(self, prompt: Prompt) -> tuple[Query, ...]:
+        """Put exactly this prompt, with retries and repairs; the last query is its answer.
+
+        For audits, which choose labels and orders themselves. Raises as `rank`.
+        """
+        self.start()
+        return tuple(self._settle([prompt])[0])
 
     def start(self) -> tuple[str, ...]:
         """Let the adapter try itself out, once; returns its warnings, which are logged too.
@@ -121,6 +119,21 @@ class AskingRanker:
         """Release what the adapter holds, if it holds anything."""
         if isinstance(self._adapter, Closable):
             self._adapter.close()
+
+    def _settle(self, asked: list[Prompt]) -> tuple[list[Query], dict[int, Answered]]:
+        """Every query it took, and the final outcome of each presentation."""
+        queries: list[Query] = []
+        final: dict[int, Answered] = {}
+        while asked:
+            finished = self._ask_until_answered(asked, queries)
+            final.update({query.prompt.order: query.outcome for query in finished})
+            asked = [
+                _repaired(query.prompt)
+                for query in finished
+                if isinstance(query.outcome, REPAIRABLE)
+                and query.prompt.repair < self._config.repairs
+            ]
+        return queries, final
 
     def _ask_until_answered(self, prompts: list[Prompt], queries: list[Query]) -> list[Query]:
         """One finished query per prompt; every try is appended to `queries`."""
@@ -190,3 +203,9 @@ class AskingRanker:
             replies = ask()
             share_s = (self._clock() - start_s) / max(1, len(replies))
         return [replace(reply, latency_s=reply.latency_s or share_s) for reply in replies]
+
+
+def _repaired(prompt: Prompt) -> Prompt:
+    """The same presentation with the format reminder."""
+    repair = prompt.repair + 1
+    return render_as(prompt.question, prompt.labels, order=prompt.order, repair=repair)
