@@ -17,11 +17,13 @@ from c2nav_engine.errors import C2NavError, InputError, MissingExtra, RankerStop
 Command = Callable[..., int]
 
 COMMANDS = (
+    "agree",
     "doctor",
     "episodes",
     "inspect",
     "run",
     "report",
+    "reeval",
     "scene",
     "replay",
     "question",

@@ -1,0 +1,115 @@
+"""`c2nav agree`: agreement and order effects between people and rankers."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+from rich.console import Console
+from rich.table import Table
+
+from app.commands.options import JsonOpt
+from app.commands.output import print_json
+from app.reviews.agreement import Agreement, OrderEffects, agreements, order_effects
+from app.reviews.answers import read_answers
+from c2nav_engine.experiments.statistics.intervals import Interval
+
+
+def agree(
+    what: Annotated[
+        tuple[Path, ...],
+        tyro.conf.Positional,
+        tyro.conf.arg(metavar="FILE|RUN…", help="Run folders, or exported reviews (.jsonl)."),
+    ],
+    seed: Annotated[int, tyro.conf.arg(help="Of the bootstrap over episodes.")] = 0,
+    json: JsonOpt = False,
+) -> int:
+    """Human–human, human–model and model–model agreement; rates as fractions of one in JSON."""
+    answers = read_answers(what)
+    pairs = agreements(answers, seed=seed)
+    orders = order_effects(answers, seed=seed)
+    if json:
+        print_json(
+            {
+                "answers": len(answers.given),
+                "agreement": [_agreement_json(row) for row in pairs],
+                "orders": [_orders_json(row) for row in orders],
+            }
+        )
+        return 0
+    console = Console(highlight=False)
+    console.print(_agreement_table(pairs))
+    console.print(_order_table(orders))
+    console.print("intervals: 95 %, episodes drawn again; α slot by slot only", markup=False)
+    return 0
+
+
+def _agreement_json(row: Agreement) -> dict[str, object]:
+    return {
+        "kind": row.kind,
+        "a": row.a,
+        "b": row.b,
+        "slot": row.slot,
+        "questions": row.questions,
+        "top1": _interval_json(row.top1),
+        "chance": row.chance,
+        "tau": _interval_json(row.tau),
+        "alpha": _interval_json(row.alpha),
+        "confusion": [{"a": a, "b": b, "n": n} for (a, b), n in row.confusion.items()],
+    }
+
+
+def _orders_json(row: OrderEffects) -> dict[str, object]:
+    return {
+        "rater": row.rater.name,
+        "human": row.rater.human,
+        "slot": row.slot,
+        "position_consistency": _interval_json(row.consistency),
+        "repetition_stability": _interval_json(row.stability),
+        "first_excess": _interval_json(row.first),
+        "last_excess": _interval_json(row.last),
+        "chance": row.chance,
+    }
+
+
+def _interval_json(interval: Interval | None) -> dict[str, object] | None:
+    if interval is None or interval.n == 0 or math.isnan(interval.estimate):
+        return None
+    return {
+        "estimate": interval.estimate,
+        "low": interval.low,
+        "high": interval.high,
+        "n": interval.n,
+    }
+
+
+def _agreement_table(rows: list[Agreement]) -> Table:
+    table = Table("kind", "pair", "slot", "n", "top-1 %", "chance %", "mean τ", "α")
+    for row in rows:
+        pair = f"{row.a} · {row.b}" if row.a else "all"
+        chance = "" if row.chance is None else f"{100 * row.chance:.0f}"
+        cells = (_words(row.top1, 100), chance, _words(row.tau), _words(row.alpha))
+        table.add_row(row.kind, pair, row.slot, str(row.questions), *cells)
+    return table
+
+
+def _order_table(rows: list[OrderEffects]) -> Table:
+    table = Table("rater", "slot", "one winner in every order %", "again alike %", "first", "last")
+    for row in rows:
+        rates = (_words(row.consistency, 100), _words(row.stability, 100))
+        table.add_row(
+            row.rater.name, row.slot, *rates, _words(row.first, 100), _words(row.last, 100)
+        )
+    return table
+
+
+def _words(interval: Interval | None, scale: int = 1) -> str:
+    if interval is None or interval.n == 0:
+        return "–"
+    digits = 0 if scale == 100 else 2
+    middle, low, high = (
+        f"{scale * value:.{digits}f}" for value in (interval.estimate, interval.low, interval.high)
+    )
+    return f"{middle} ({low} … {high})"
