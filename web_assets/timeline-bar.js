@@ -30,7 +30,7 @@ const styles = styled(`
   .here { stroke: var(--c2-blue); stroke-width: 2; }
   .heretext { fill: var(--c2-blue-text); font-weight: 600; paint-order: stroke; stroke: var(--c2-card);
     stroke-width: 4px; }
-  .mark rect.regret { fill: var(--c2-vermilion); opacity: 0.85; }
+  .mark rect.regret { fill: var(--c2-ink); }
   .tip { position: absolute; bottom: calc(100% + 4px); background: var(--c2-ink); color: var(--c2-card);
     border-radius: 6px; padding: 3px 8px; font-size: 12px; white-space: nowrap; pointer-events: none;
     max-width: 480px; overflow: hidden; text-overflow: ellipsis; }
@@ -119,9 +119,13 @@ class TimelineBar extends HTMLElement {
       const sign = mark.fault ? "✕" : mark.open ? { 0: "○", 1: "△", 2: "□" }[mark.lane] : SIGNS[mark.lane];
       parts.push(this.mark(mark, LANES[mark.lane], sign, kinds.join(" "), { decision: mark.decision }));
     }
+    const crowd = new Map();
     for (const event of timeline.events) {
+      // Several events of one step stand side by side.
+      const place = crowd.get(event.step) ?? 0;
+      crowd.set(event.step, place + 1);
       const kind = `${event.fault ? "bad" : ""} ${event.step > here.step ? "far" : ""}`;
-      parts.push(this.mark(event, EVENTS, event.sign, kind, { step: event.step }));
+      parts.push(this.mark(event, EVENTS, event.sign, kind, { step: event.step }, 12 * place));
     }
     parts.push(...(timeline.place ? this.place(timeline.place) : this.regrets(timeline.regret)));
     return parts;
@@ -163,8 +167,8 @@ class TimelineBar extends HTMLElement {
     return parts;
   }
 
-  mark(mark, y, sign, kind, target) {
-    const x = this.x(mark.step);
+  mark(mark, y, sign, kind, target, shift = 0) {
+    const x = this.x(mark.step) + shift;
     const group = s(
       "g",
       { class: `mark ${kind}` },

@@ -105,7 +105,7 @@ async def _to_viser(page: WebSocket, viser: ClientConnection) -> None:
     with contextlib.suppress(WebSocketDisconnect, ConnectionClosed):
         while True:
             frame = await page.receive_bytes()
-            if _SHARE not in frame[:64]:
+            if _SHARE not in frame[:4096]:
                 await viser.send(frame)
 
 

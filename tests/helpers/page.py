@@ -174,6 +174,6 @@ def picture(
         arrange(seen)
     seen.page.wait_for_timeout(settle_ms)
     folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{name}.png"
-    seen.page.screenshot(path=path)
+    path = folder / f"{name}.jpg"
+    seen.page.screenshot(path=path, type="jpeg", quality=72)
     return path
