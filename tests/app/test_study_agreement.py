@@ -24,6 +24,7 @@ from tests.helpers.judged import RANKER, judged_run, study_with
 
 ANN, BOB, EVE = (Rater(name, human=True) for name in ("P1", "P2", "P3"))
 MODEL, OTHER = Rater("model", human=False), Rater("other", human=False)
+TAU: Any = kendalltau
 KEYS = {"seeing": ("front", "left", "right"), "transition": ("next", "stay")}
 
 
