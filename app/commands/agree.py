@@ -13,7 +13,7 @@ from rich.table import Table
 from app.commands.options import JsonOpt
 from app.commands.output import print_json
 from app.reviews.agreement import Agreement, OrderEffects, agreements, order_effects
-from app.reviews.answers import read_answers
+from app.reviews.reading import read_answers
 from c2nav_engine.experiments.statistics.intervals import Interval
 
 
@@ -21,7 +21,9 @@ def agree(
     what: Annotated[
         tuple[Path, ...],
         tyro.conf.Positional,
-        tyro.conf.arg(metavar="FILE|RUN…", help="Run folders, or exported reviews (.jsonl)."),
+        tyro.conf.arg(
+            metavar="FILE|RUN…", help="Run folders, reviews (.jsonl), re-evaluations (.parquet)."
+        ),
     ],
     seed: Annotated[int, tyro.conf.arg(help="Of the bootstrap over episodes.")] = 0,
     json: JsonOpt = False,

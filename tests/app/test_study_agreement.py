@@ -17,7 +17,9 @@ from app.cli import main
 from app.reviews.agreement import ALL, agreements, alpha_interval, order_effects
 from app.reviews.answers import Answer, Answers, Rater, Showing
 from app.reviews.desk import Desk, Submission
+from app.reviews.reading import read_answers
 from app.reviews.store import export_lines, store_of
+from c2nav_engine.experiments.reeval_table import COLUMNS, write_table
 from c2nav_engine.experiments.statistics.agreement import krippendorff_alpha
 from c2nav_engine.experiments.statistics.orders import Shown
 from tests.helpers.judged import RANKER, judged_run, study_with
@@ -60,9 +62,7 @@ def test_figures_of_pairs_equal_scipy_and_statsmodels():
             )
             assert row.chance == pytest.approx(1 / len(keys), abs=1e-9)
             taus = [
-                float(
-                    kendalltau(*([by[r, q].tiers.index((key,)) for key in keys] for r in (a, b)))[0]
-                )
+                TAU(*([by[r, q].tiers.index((key,)) for key in keys] for r in (a, b)))[0]
                 for q in names
             ]
             assert row.tau.estimate == pytest.approx(np.mean(taus), abs=1e-9)
@@ -177,6 +177,41 @@ def test_the_command_equals_a_hand_count_of_what_was_exported(tmp_path: Path, ca
     out.write_text("\n".join(json.dumps(line) for line in lines), encoding="utf-8")
     from_file = _agree(capsys, out)
     assert from_file["agreement"] == [r for r in told["agreement"] if r["kind"] == "human-human"]
+
+
+def test_a_reevaluation_stands_beside_what_was_recorded(tmp_path: Path):
+    rows = [
+        dict.fromkeys(COLUMNS)
+        | {
+            "trace_sha256": "a" * 64,
+            "decision": number,
+            "scene_id": "s",
+            "episode_id": str(number // 4),
+            "slot": "transition",
+            "form": "ordinal",
+            "order": order,
+            "labelling": "position",
+            "keys": ["stay", "next"][:: 1 - 2 * order],
+            "recorded_ranker": "old",
+            "recorded_winner": "stay",
+            "ranker": "old" if number % 2 else "new",
+            "ranking": [["stay" if number % 4 else "next"], ["next" if number % 4 else "stay"]],
+        }
+        for number in range(16)
+        for order in (1, 0)
+    ]
+    write_table(rows, tmp_path / "again.parquet")
+    answers = read_answers([tmp_path / "again.parquet"])
+    found = {(row.a, row.b): row for row in agreements(answers)}
+    fresh, again = found["new", "old"], found["old", "old, again"]
+    assert fresh.top1 is not None
+    assert again.top1 is not None
+    assert (fresh.top1.estimate, fresh.top1.n) == (0.5, 8)
+    assert (again.top1.estimate, again.top1.n) == (1.0, 8)
+    assert fresh.tau is None
+    effects = {row.rater.name: row for row in order_effects(answers)}
+    assert effects["new"].consistency.estimate == 1.0
+    assert effects["new"].consistency.n == 8
 
 
 def _agree(capsys: pytest.CaptureFixture[str], what: Path) -> dict[str, Any]:
