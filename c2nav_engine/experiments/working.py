@@ -120,9 +120,13 @@ class Simulating:
 
     Scenes, floors and renderers serve one thread at a time, so whatever touches them happens under
     one lock; only the ranker's answer is waited for outside it.
+
+    Args:
+        bench_for: Setting and run folder → what its tasks share; `workbench_of` by default.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, bench_for: Callable[[Setting, Path], Workbench] | None = None) -> None:
+        self._bench_for = bench_for
         self._turn = threading.Lock()
         self._benches: dict[str, Workbench] = {}
 
@@ -141,7 +145,7 @@ class Simulating:
     def _bench(self, setting: Setting, run: Path) -> Workbench:
         name = f"{run}/{setting.identity}/{sorted(setting.ranker_options.items())}"
         if name not in self._benches:
-            self._benches = {name: workbench_of(setting, run)}
+            self._benches = {name: (self._bench_for or workbench_of)(setting, run)}
         return self._benches[name]
 
     def _work(self, bench: Workbench, task: Task, run: Path, stop: Stopping) -> Finished | None:
