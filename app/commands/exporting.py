@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -11,6 +12,7 @@ from typing import Annotated
 import tyro
 from rich.console import Console
 
+from app.commands.merging import reviews_for
 from app.commands.options import JsonOpt, ScenesOpt
 from app.commands.output import print_json
 from app.commands.surroundings import Surroundings, surroundings_of
@@ -27,7 +29,6 @@ from c2nav_engine.traces.exports import (
     export_redacted,
     export_rrd,
     export_video,
-    reviews_of,
 )
 from c2nav_engine.traces.reader import TraceFile
 
@@ -63,7 +64,7 @@ class Wish:
     """What one export is asked for, apart from the traces.
 
     Attributes:
-        other: A second trace: the overlay of `rrd`, the reviewed trace of `merged`.
+        other: The second run of `rrd`; where the reviews of `merged` are.
         scenes: Folder of scenes, for the mesh.
         no_scene: Leave the 3-D view out.
         licensed_pictures: Put licensed pictures in.
@@ -105,7 +106,7 @@ def export(
         tyro.conf.arg(
             name="with",
             metavar="OTHER",
-            help="rrd: a second run over the first. merged: the trace that carries the reviews.",
+            help="rrd: a second run over the first. merged: a run folder or file with reviews.",
         ),
     ] = None,
     scenes: ScenesOpt = None,
@@ -159,9 +160,6 @@ def _check(traces: Sequence[Path], to: Format, wish: Wish) -> None:
         raise UsageError(message)
     if wish.other is not None and to not in (Format.RRD, Format.MERGED):
         message = f"expected --with for rrd or merged alone, came {to.value}"
-        raise UsageError(message)
-    if wish.other is None and to is Format.MERGED:
-        message = "expected --with OTHER, the trace that carries the reviews, for merged"
         raise UsageError(message)
     if wish.other is not None and len(traces) > 1:
         message = f"expected one trace beside --with, came {len(traces)}"
@@ -223,35 +221,42 @@ def _assessed(members: Sequence[Member], found: Surroundings) -> dict[str, dict[
 
 
 def _rrd(traces: tuple[Path, ...], out: Path, wish: Wish) -> Sequence[str]:
-    other = TraceFile(wish.other) if wish.other is not None else None
     found = Surroundings()
     if not wish.no_scene:
         found = surroundings_of(family_of([read_trace(traces[0])])[0].story, wish.scenes)
-    export_rrd(TraceFile(traces[0]), out, other=other, scene=found.scene)
+    with ExitStack() as files:
+        first = files.enter_context(TraceFile(traces[0]))
+        other = None if wish.other is None else files.enter_context(TraceFile(wish.other))
+        export_rrd(first, out, other=other, scene=found.scene)
     return (f"without the mesh: {found.why_not}",) if found.why_not else ()
 
 
 def _ndjson(traces: tuple[Path, ...], out: Path, _: Wish) -> Sequence[str]:
-    return (f"{export_ndjson(TraceFile(traces[0]), out)} lines",)
+    with TraceFile(traces[0]) as trace:
+        return (f"{export_ndjson(trace, out)} lines",)
 
 
 def _parquet(traces: tuple[Path, ...], out: Path, wish: Wish) -> Sequence[str]:
-    files = [TraceFile(path) for path in traces]
-    return (f"{export_parquet(files, out, table=wish.table)} rows of {wish.table}",)
+    with ExitStack() as files:
+        opened = [files.enter_context(TraceFile(path)) for path in traces]
+        return (f"{export_parquet(opened, out, table=wish.table)} rows of {wish.table}",)
 
 
 def _video(traces: tuple[Path, ...], out: Path, _: Wish) -> Sequence[str]:
-    return (f"{export_video(TraceFile(traces[0]), out)} frames",)
+    with TraceFile(traces[0]) as trace:
+        return (f"{export_video(trace, out)} frames",)
 
 
 def _merged(traces: tuple[Path, ...], out: Path, wish: Wish) -> Sequence[str]:
-    reviews = reviews_of(TraceFile(wish.other)) if wish.other is not None else []
-    sha256 = export_merged(TraceFile(traces[0]), out, reviews=reviews)
+    with TraceFile(traces[0]) as trace:
+        reviews = reviews_for(trace, wish.other)
+        sha256 = export_merged(trace, out, reviews=reviews)
     return (f"{len(reviews)} reviews, sha256 {sha256}",)
 
 
 def _redacted(traces: tuple[Path, ...], out: Path, _: Wish) -> Sequence[str]:
-    return (f"sha256 {export_redacted(TraceFile(traces[0]), out)}",)
+    with TraceFile(traces[0]) as trace:
+        return (f"sha256 {export_redacted(trace, out)}",)
 
 
 _MAKERS: dict[Format, Maker] = {
