@@ -82,10 +82,10 @@ def drawn(
     seed: int,
     most: int = MOST_AN_EPISODE,
 ) -> list[Candidate]:
-    """Up to `per_slot` decisions of each slot, at most `most` an episode; scarce slots go first.
+    """Up to `per_slot` decisions of each slot, at most `most` an episode.
 
-    The slot with the fewest candidates left draws next, so that common slots do not use up the
-    episodes that rare ones need.
+    Slots draw one decision each in turn, the scarcest first: none uses up the episodes that
+    another one needs.
     """
     generator = np.random.default_rng(seed)
     order: list[int] = generator.permutation(len(candidates)).tolist()
@@ -93,11 +93,13 @@ def drawn(
     left = {slot: [one for one in shuffled if one.slot == slot] for slot in _slots(candidates)}
     taken: Counter[str] = Counter()
     chosen: list[Candidate] = []
-    for slot in sorted(left, key=lambda slot: (len(left[slot]), slot)):
-        for one in sorted(left[slot], key=lambda one: taken[one.episode]):
-            if sum(each.slot == slot for each in chosen) == per_slot:
-                break
-            if taken[one.episode] < most:
+    for _ in range(per_slot):
+        for slot in sorted(left, key=lambda slot: (len(left[slot]), slot)):
+            free = [one for one in left[slot] if taken[one.episode] < most]
+            if free:
+                # From the episode that has given least, so that many episodes are heard.
+                one = min(free, key=lambda one: taken[one.episode])
+                left[slot].remove(one)
                 taken[one.episode] += 1
                 chosen.append(one)
     return sorted(chosen, key=lambda one: (one.episode, one.decision, one.trace_sha256))

@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fastapi import FastAPI
 from starlette.testclient import TestClient
 
 from app.gateway.doors import STRICT_POLICY
-from app.gateway.judging import desks_of, judging_application
+from app.gateway.judging import desks_of, judging_application, mount_judging
 from app.reviews.questions import prompt_at
 from app.reviews.study import Person, Study
 from c2nav_engine.contract.render import text_of
@@ -168,3 +169,10 @@ def test_undo_shows_the_last_question_again(judging: Judging):
     first = judging.post("next").json()
     judging.answer(0, [["A"]])
     assert judging.post("undo").json() == first
+
+
+def test_the_inspector_has_the_page_where_its_run_has_a_study(judging: Judging, tmp_path: Path):
+    for entries, status in (([str(judging.study.trace(0))], 200), (["7", "8"], 404)):
+        app = FastAPI()
+        mount_judging(app, entries)
+        assert TestClient(app).get("/judge").status_code == status
