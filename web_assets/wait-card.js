@@ -80,7 +80,7 @@ class WaitCard extends HTMLElement {
     return h(
       "div",
       { class: "card" },
-      h("span", {}, `Forks here: about ${cost.filter(Boolean).join(", ")}`),
+      h("span", {}, offer.decisions ? `Forks here: about ${cost.filter(Boolean).join(", ")}` : "Forks here; what follows is not known yet"),
       h("button", { class: "go", onclick: () => send("commit") }, "Fork"),
       h("button", { onclick: () => send("clear") }, "Cancel"),
     );

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from app.session.opened import Choice, Entry, Opened, Opening, Run
+from app.session.opened import Choice, Entry, ForkAt, Opened, Opening, Run
 from c2nav_engine.contract.question import Picture
 from c2nav_engine.episodes.profile import Profile, profile_named
 from c2nav_engine.errors import SceneError, UsageError
@@ -17,9 +17,7 @@ from c2nav_engine.experiments.working import source_of
 from c2nav_engine.navigator.config import LoopConfig
 from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.navigator.variants import PRESETS
-from c2nav_engine.runner.exchange import Exchange, Override
 from c2nav_engine.runner.opening import OpenSpec, Workbench
-from c2nav_engine.runner.record import Header
 from c2nav_engine.runner.recorded import open_trace, read_trace
 from c2nav_engine.runner.recording import TraceWriter
 from c2nav_engine.runner.reshell import source_of_record
@@ -97,20 +95,20 @@ class Live:
         shown = None if scene is None else partial(display_scene, scene, cache_folder())
         return Opening(header=run.header, run=run, scene=shown)
 
-    def fork(
-        self, header: Header, exchanges: Sequence[Exchange], decision: int, override: Override
-    ) -> Run:
-        """Another answer at a decision, then the present ranker."""
+    def fork(self, wanted: ForkAt) -> Run:
+        """Another answer at a decision, then the chosen ranker."""
+        header = wanted.header
         spec = OpenSpec(
             header.episode.episode_id,
             header.variant,
             header.seed,
             run="inspected",
-            trace=_fresh(f"{header.episode.episode_id}.{header.variant}.at{decision}"),
+            trace=_fresh(f"{header.episode.episode_id}.{header.variant}.at{wanted.decision}"),
             config=LoopConfig.from_json(header.config),
-            fork_decision=decision,
+            fork_decision=wanted.decision,
         )
-        return self._bench(self._setting.ranker).fork(spec, exchanges, override)
+        bench = self._bench(wanted.ranker or self._setting.ranker)
+        return bench.fork(spec, wanted.exchanges, wanted.override)
 
     def _bench(self, ranker: str) -> Workbench:
         own = ranker == self._setting.ranker
@@ -133,7 +131,7 @@ def opened_traces(paths: Sequence[Path], setting: Setting) -> Opened:
     return Opened(
         title=title,
         entries=entries,
-        first=Choice(entries[0].entry_id),
+        first=Choice(entries[0].entry_id, ranker=setting.ranker),
         open=lambda choice: _recorded(by_id[choice.entry_id], scenes),
         fork=partial(_fork_recorded, setting),
         rankers=tuple(RANKERS),
@@ -192,13 +190,8 @@ def _recorded(path: Path, scenes: Path | None) -> Opening:
     )
 
 
-def _fork_recorded(
-    setting: Setting,
-    header: Header,
-    exchanges: Sequence[Exchange],
-    decision: int,
-    override: Override,
-) -> Run:
+def _fork_recorded(setting: Setting, wanted: ForkAt) -> Run:
+    header = wanted.header
     source = source_of_record(header, Path(setting.scenes) if setting.scenes else None)
     live = Live(
         source,
@@ -206,7 +199,7 @@ def _fork_recorded(
         header.profile,
         replace(setting, source="trace"),
     )
-    return live.fork(header, exchanges, decision, override)
+    return live.fork(wanted)
 
 
 def host_beyond(setting: Setting) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.session.branches import Branch, Origin, fork_estimate, median_query_s
 from app.session.desk import Desk, Errand, Message
 from app.session.draft import Draft, outcome_of
-from app.session.opened import Run
+from app.session.opened import ForkAt, Run
 from app.session.snapshot import Asking, ForkOffer
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.contract.question import Orders, Question
@@ -180,12 +180,19 @@ def fork(desk: Desk, why: str) -> None:
     if decision is None or start is None:
         return
     override = override_of(desk, why)
+    wanted = ForkAt(
+        parent.header,
+        parent.exchanges,
+        decision.number,
+        override,
+        desk.snapshot.chooser.choice.ranker,
+    )
     generation = desk.generation
     desk.change(offer=None, draft=Draft(), working=f"forking at decision {decision.number}")
 
     def task() -> Message:
         try:
-            run = start(parent.header, parent.exchanges, decision.number, override)
+            run = start(wanted)
         except C2NavError as error:
             problem = str(error)
             return lambda desk: not_forked(desk, problem)

@@ -8,6 +8,7 @@ from typing import Any
 
 from app.session import asking, driving, judging, moving, placing
 from app.session import commands as c
+from app.session.branches import Origin
 from app.session.desk import Desk
 from app.session.draft import Draft, arranged, none_of_these, press, take_back, tie
 from app.session.opened import Choice
@@ -39,6 +40,12 @@ def _go(desk: Desk, command: c.Go) -> None:
 
 def _open(desk: Desk, command: c.Open) -> None:
     now = desk.snapshot.chooser.choice
+    recorded = not desk.runs or desk.snapshot.branches[0].origin is Origin.RECORDED
+    if recorded and command.ranker and not (command.entry or command.variant):
+        # What is recorded stays as it is: the ranker answers in the forks to come.
+        chosen = Choice(now.entry_id, now.variant, command.ranker)
+        desk.change(chooser=replace(desk.snapshot.chooser, choice=chosen))
+        return
     desk.reopen(
         Choice(
             command.entry or now.entry_id,

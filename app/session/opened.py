@@ -112,8 +112,23 @@ class Opening:
     no_scene: str = ""
 
 
-ForkAt = Callable[[Header, Sequence[Exchange], int, Override], Run]
-"""Header and exchanges of the parent, the decision, and the new answer there → a live episode."""
+@dataclass(frozen=True, slots=True)
+class ForkAt:
+    """Another answer at a decision of a branch.
+
+    Attributes:
+        header: Of the branch that is left.
+        exchanges: What happened in it.
+        decision: Where it is left.
+        override: The new answer there.
+        ranker: Who answers from then on; "" for whoever was named at the start.
+    """
+
+    header: Header
+    exchanges: Sequence[Exchange]
+    decision: int
+    override: Override
+    ranker: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +150,7 @@ class Opened:
     entries: tuple[Entry, ...]
     first: Choice
     open: Callable[[Choice], Opening]
-    fork: ForkAt | None = None
+    fork: Callable[[ForkAt], Run] | None = None
     variants: tuple[str, ...] = ()
     rankers: tuple[str, ...] = ()
     sends_to: str = ""

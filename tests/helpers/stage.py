@@ -18,7 +18,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from app.session.opened import Choice, Entry, Opened, Opening
+from app.session.opened import Choice, Entry, ForkAt, Opened, Opening
 from c2nav_engine.contract.outcome import ORDERS_DISAGREE, Abstention, Answered, Ordering
 from c2nav_engine.contract.presentation import presentations
 from c2nav_engine.contract.prompt import Query, Ranked, Reply
@@ -446,10 +446,9 @@ def finished_run(cycles: int = 14) -> PlayRun:
     return run
 
 
-def fork_of(
-    parent: Header, exchanges: Sequence[Exchange], decision: int, override: Override
-) -> PlayRun:
+def fork_of(wanted: ForkAt) -> PlayRun:
     """The same answers up to a decision, then another one."""
+    exchanges, decision, override = wanted.exchanges, wanted.decision, wanted.override
     run = live_run(parent_sha256="0" * 64, fork_decision=decision)
     while run.pending is not None:
         number = run._decisions if isinstance(run.pending, Ask) else None
