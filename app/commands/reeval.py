@@ -46,6 +46,9 @@ def reeval(
         message = "expected traces or run folders, came none that holds a trace"
         raise UsageError(message)
     options = key_values(ranker_opt)
+    if "cache" in options:
+        message = "expected no answer cache, came the option cache; questions are asked anew here"
+        raise UsageError(message)
     asking, _ = asking_from(options)
     answering = ranker_for(ranker, options)
     order_set = OrderSet(orders)
