@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from c2nav_engine.rankers.accounting import AskingConfig
 from c2nav_engine.rankers.options import OptionReader
 
-ASKING_OPTIONS = ("concurrency", "retries", "max_queries", "max_cost_usd")
+ASKING_OPTIONS = ("concurrency", "retries", "max_queries", "max_cost_usd", "cache")
 """Option names that belong to the asking, not to the adapter."""
 
 
@@ -16,7 +16,7 @@ def asking_from(options: Mapping[str, str]) -> tuple[AskingConfig, dict[str, str
 
     `concurrency` is the number of queries under way at once over all episodes of a process,
     `retries` the further tries after a transport failure; `max_queries` and `max_cost_usd` end
-    the run (of one process) when they are used up.
+    the run (of one process) when they are used up. `cache` is a folder of kept answers.
     """
     own = {name: text for name, text in options.items() if name in ASKING_OPTIONS}
     rest = {name: text for name, text in options.items() if name not in ASKING_OPTIONS}
@@ -27,5 +27,6 @@ def asking_from(options: Mapping[str, str]) -> tuple[AskingConfig, dict[str, str
         retries=max(0, reader.integer("retries", usual.retries)),
         max_queries=reader.optional_integer("max_queries"),
         max_cost_usd=reader.optional_number("max_cost_usd"),
+        cache=reader.text("cache"),
     )
     return config, rest

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from c2nav_engine.contract.route_model import Complete
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.asking import asking_from
+from c2nav_engine.rankers.capabilities import PRESETS, Preset
 from c2nav_engine.rankers.completing import completion_through
 from c2nav_engine.rankers.protocol import Adapter
 from c2nav_engine.rankers.wrapper import AskingRanker
@@ -128,6 +129,21 @@ def _openai_chat(options: Options) -> Adapter:
     return OpenAIChat.from_options(options)
 
 
+def _preset(name: str, preset: Preset) -> RankerEntry:
+    """A known model under its short name; its options are those of its interface."""
+
+    def build(options: Options) -> Adapter:
+        if preset.ranker == "openai-responses":
+            from c2nav_engine.rankers.openai_responses import OpenAIResponses
+
+            return OpenAIResponses.from_options(options, name=name)
+        from c2nav_engine.rankers.openai_chat import OpenAIChat
+
+        return OpenAIChat.from_options(options, name=name)
+
+    return _entry(build, f"{preset.model} through {preset.ranker}", remote=True)
+
+
 def _openai_responses(options: Options) -> Adapter:
     from c2nav_engine.rankers.openai_responses import OpenAIResponses
 
@@ -152,6 +168,7 @@ RANKERS: Mapping[str, RankerEntry] = {
     "openai-responses": _entry(
         _openai_responses, "servers that speak the responses API", remote=True
     ),
+    **{name: _preset(name, preset) for name, preset in PRESETS.items()},
     "local": _entry(_local, "Qwen3-VL in process (extra `local`)"),
     "human": RankerEntry(_human, "a person in the inspector", interactive=True),
     "scripted": _entry(_scripted, "a fixed answer, for tests"),

@@ -21,6 +21,7 @@ class AskingConfig:
         concurrency: Queries under way at once, over all episodes that share the ranker [C].
         max_queries: Queries before the run stops; None for no limit.
         max_cost_usd: Known cost before the run stops; None for no limit.
+        cache: Folder of the answer cache; "" asks every time.
     """
 
     repairs: int = 1
@@ -30,6 +31,7 @@ class AskingConfig:
     concurrency: int = 8
     max_queries: int | None = None
     max_cost_usd: float | None = None
+    cache: str = ""
 
 
 @dataclass

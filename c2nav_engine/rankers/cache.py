@@ -27,7 +27,7 @@ class AnswerCache:
 
     Args:
         folder: Where the files lie; made when first written.
-        asked: What is asked and how: adapter, model, sampling, every option but the key.
+        asked: Who is asked and how: adapter, model, sampling, every setting but the key.
     """
 
     def __init__(self, folder: Path, asked: Mapping[str, str]) -> None:

@@ -49,6 +49,11 @@ class Local:
         """A model is asked in every order the question wants."""
         return False
 
+    @property
+    def fingerprint(self) -> str:
+        """Model, device and picture size."""
+        return repr(self._model.settings)
+
     def answer(self, prompt: Prompt) -> Reply:
         """One query."""
         return self.answer_all([prompt])[0]

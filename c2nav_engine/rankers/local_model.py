@@ -53,6 +53,7 @@ class LocalModel:
     """
 
     def __init__(self, settings: LocalSettings) -> None:
+        self.settings = settings
         self._torch = _optional("torch")
         transformers = _optional("transformers")
         cuda = self._torch.cuda.is_available()

@@ -36,6 +36,11 @@ class OpenAIChat:
         """A model is asked in every order the question wants."""
         return False
 
+    @property
+    def fingerprint(self) -> str:
+        """The settings, which name the key's variable but never hold the key."""
+        return repr(self._settings)
+
     def answer(self, prompt: Prompt) -> Reply:
         """One completion."""
         return self.send(prompt.parts, answer_schema(prompt))

@@ -47,6 +47,16 @@ class Startable(Protocol):
 
 
 @runtime_checkable
+class Fingerprinted(Protocol):
+    """An adapter whose settings shape its answers."""
+
+    @property
+    def fingerprint(self) -> str:
+        """Every such setting (model, sampling, picture size) as text; never a key."""
+        ...
+
+
+@runtime_checkable
 class Saying(Protocol):
     """An adapter with a language model behind it that also takes plain text."""
 

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
 from threading import BoundedSemaphore, Lock
 
 from c2nav_engine.contract.aggregate import aggregate
@@ -31,7 +32,13 @@ from c2nav_engine.contract.render import render, render_as
 from c2nav_engine.errors import RankerUnavailable
 from c2nav_engine.rankers.accounting import AskingConfig, Spent
 from c2nav_engine.rankers.cache import AnswerCache
-from c2nav_engine.rankers.protocol import Adapter, BatchAdapter, Closable, Startable
+from c2nav_engine.rankers.protocol import (
+    Adapter,
+    BatchAdapter,
+    Closable,
+    Fingerprinted,
+    Startable,
+)
 from c2nav_engine.rankers.reading import read
 
 REPAIRABLE = (Invalid, Empty, Truncated, Refused)
@@ -47,8 +54,7 @@ class AskingRanker:
 
     Args:
         adapter: What answers single prompts.
-        config: Retries, budget, concurrency.
-        cache: Answers on disk; None asks every time.
+        config: Retries, budget, concurrency, cache.
         clock: Monotonic seconds, for latencies alone.
         sleep: Waits between retries.
         privileged: Whether the adapter knows the truth (simulated observers).
@@ -59,14 +65,13 @@ class AskingRanker:
         adapter: Adapter,
         config: AskingConfig | None = None,
         *,
-        cache: AnswerCache | None = None,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
         privileged: bool = False,
     ) -> None:
         self._adapter = adapter
         self._config = config or AskingConfig()
-        self._cache = cache
+        self._cache = _cache_of(adapter, self._config)
         self._clock = clock
         self._sleep = sleep
         self._privileged = privileged
@@ -209,3 +214,11 @@ def _repaired(prompt: Prompt) -> Prompt:
     """The same presentation with the format reminder."""
     repair = prompt.repair + 1
     return render_as(prompt.question, prompt.labels, order=prompt.order, repair=repair)
+
+
+def _cache_of(adapter: Adapter, config: AskingConfig) -> AnswerCache | None:
+    """The answer cache, keyed by everything besides the request that shapes an answer."""
+    if not config.cache:
+        return None
+    fingerprint = adapter.fingerprint if isinstance(adapter, Fingerprinted) else ""
+    return AnswerCache(Path(config.cache), {"name": adapter.name, "settings": fingerprint})

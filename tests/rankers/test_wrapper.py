@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from c2nav_engine.contract.outcome import (
@@ -38,11 +40,9 @@ class Clock:
 
 def ranker(script, *, clock: Clock | None = None, **config) -> AskingRanker:
     clock = clock or Clock()
-    config = {"concurrency": 1, **config}
+    asking = replace(AskingConfig(concurrency=1), **config)
     adapter = script if isinstance(script, Scripted) else Scripted(script)
-    return AskingRanker(
-        adapter, AskingConfig(**config), clock=clock.read, sleep=clock.slept_s.append
-    )
+    return AskingRanker(adapter, asking, clock=clock.read, sleep=clock.slept_s.append)
 
 
 def best_first(*wanted: str):

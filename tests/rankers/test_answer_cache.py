@@ -11,17 +11,17 @@ from c2nav_engine.contract.prompt import Prompt, Reply
 from c2nav_engine.contract.question import Slot
 from c2nav_engine.errors import RankerStopped, RankerUnavailable, UsageError
 from c2nav_engine.rankers.accounting import AskingConfig
-from c2nav_engine.rankers.assembly import ADAPTERS, assemble
 from c2nav_engine.rankers.cache import AnswerCache
-from c2nav_engine.rankers.capabilities import PRESETS
 from c2nav_engine.rankers.completing import completion_through
 from c2nav_engine.rankers.openai_chat import OpenAIChat
+from c2nav_engine.rankers.openai_responses import OpenAIResponses
 from c2nav_engine.rankers.random_order import RandomOrder
 from c2nav_engine.rankers.scripted import Scripted
 from c2nav_engine.rankers.wrapper import AskingRanker
 from tests.helpers.model_server import CANARY, completion, error
 from tests.helpers.questions import question
 
+EFFORTS = ("low", "high")
 ASKED = {"name": "scripted", "model": "m", "temperature": "0"}
 
 
@@ -37,8 +37,8 @@ def counting(said: str | Reply = "A") -> tuple[Scripted, list[Prompt]]:
 
 def test_a_second_run_asks_nothing_and_says_so(tmp_path: Path):
     adapter, prompts = counting(Reply(text="A", tokens_in=9, cost_usd=0.5))
-    config = AskingConfig(concurrency=1)
-    runs = [AskingRanker(adapter, config, cache=AnswerCache(tmp_path, ASKED)) for _ in range(2)]
+    config = AskingConfig(concurrency=1, cache=str(tmp_path))
+    runs = [AskingRanker(adapter, config) for _ in range(2)]
     first, second = (run.rank(question(Slot.GROUND)) for run in runs)
     assert len(prompts) == 2
     assert second.outcome == first.outcome
@@ -48,13 +48,15 @@ def test_a_second_run_asks_nothing_and_says_so(tmp_path: Path):
     assert second.queries[0].reply.tokens_in == 9
 
 
-def test_another_request_or_another_sampling_is_another_entry(tmp_path: Path):
-    adapter, prompts = counting()
-    for asked, seed in ((ASKED, 1), (ASKED, 2), ({**ASKED, "temperature": "0.7"}, 1)):
-        ranker = AskingRanker(adapter, cache=AnswerCache(tmp_path, asked))
-        ranker.rank(question(seed=seed))
-    assert len(prompts) >= 2
-    assert len(list(tmp_path.rglob("*.json"))) == len(prompts)
+def test_another_request_or_another_setting_is_another_entry(tmp_path: Path):
+    prompts = [
+        AskingRanker(counting()[0]).rank(question(seed=seed)).queries[0].prompt for seed in (1, 2)
+    ]
+    cache = AnswerCache(tmp_path, ASKED)
+    cache.put(prompts[0], Reply(text="A"))
+    assert cache.get(prompts[0]) is not None
+    assert cache.get(prompts[1]) is None
+    assert AnswerCache(tmp_path, {**ASKED, "temperature": "0.7"}).get(prompts[0]) is None
 
 
 def test_refusals_are_kept_and_failed_transports_are_not(tmp_path: Path):
@@ -81,36 +83,19 @@ def test_a_broken_entry_is_asked_again(tmp_path: Path, content: str):
 def test_cached_answers_do_not_use_up_the_budget(tmp_path: Path):
     adapter, _ = counting()
     for _ in range(3):
-        config = AskingConfig(max_queries=1)
-        AskingRanker(adapter, config, cache=AnswerCache(tmp_path, ASKED)).rank(question())
+        config = AskingConfig(max_queries=1, cache=str(tmp_path))
+        AskingRanker(adapter, config).rank(question())
     with pytest.raises(RankerStopped):
         AskingRanker(adapter, AskingConfig(max_queries=0)).rank(question())
 
 
-def test_every_preset_and_adapter_is_built_by_name(monkeypatch, tmp_path: Path):
+def test_a_served_model_s_settings_are_in_its_key_and_its_key_is_not(monkeypatch):
     monkeypatch.setenv("OPENAI_API_KEY", CANARY)
-    for name in PRESETS:
-        ranker = assemble(name, {"retries": "1", "cache": str(tmp_path), "concurrency": "2"})
-        assert ranker.name == f"{name}:{PRESETS[name].model}"
-        ranker.close()
-    assert set(PRESETS) <= set(ADAPTERS)
-    assert assemble("random", {"seed": "3"}).name == "random"
-    assert not list(tmp_path.rglob("*"))
-
-
-@pytest.mark.parametrize(
-    ("name", "options"),
-    [
-        ("gpt-9", {}),
-        ("random", {"sead": "1"}),
-        ("random", {"concurrency": "0"}),
-        ("reference-cv", {"model": "x"}),
-        ("scripted", {"retries": "many"}),
-    ],
-)
-def test_unknown_names_and_options_are_usage_errors(name: str, options: dict[str, str]):
-    with pytest.raises(UsageError):
-        assemble(name, options)
+    low, high = (OpenAIResponses.from_options({"effort": e}, name="gpt-5.5") for e in EFFORTS)
+    assert low.fingerprint != high.fingerprint
+    assert CANARY not in low.fingerprint
+    low.close()
+    high.close()
 
 
 def test_a_route_is_completed_once_without_schema_or_pictures(httpserver: HTTPServer):
