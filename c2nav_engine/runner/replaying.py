@@ -79,11 +79,7 @@ def replay(
         except StopIteration as finished:
             return _end_difference(exchange, decision, footer, str(finished.value))
     loop.close()
-    ended_open = footer is None or footer.outcome in {
-        EpisodeOutcome.ERROR,
-        EpisodeOutcome.INTERRUPTED,
-    }
-    if ended_open:
+    if footer is None or footer.outcome in {EpisodeOutcome.ERROR, EpisodeOutcome.INTERRUPTED}:
         return None
     return Divergence(
         len(exchanges), decision, "end", "outcome", footer.outcome.value, "the core goes on"
@@ -143,8 +139,13 @@ def _members(recorded: Any, replayed: Any) -> list[tuple[str, object, object]]:
             for field in dataclasses.fields(recorded)
         ]
     if isinstance(recorded, tuple):
-        pairs = [(f"[{i}]", a, b) for i, (a, b) in enumerate(zip(recorded, replayed, strict=False))]
-        return [*pairs, (".length", len(recorded), len(replayed))]
+        before_all = cast("tuple[object, ...]", recorded)
+        after_all = cast("tuple[object, ...]", replayed)
+        pairs = [
+            (f"[{place}]", one, other)
+            for place, (one, other) in enumerate(zip(before_all, after_all, strict=False))
+        ]
+        return [*pairs, (".length", len(before_all), len(after_all))]
     if isinstance(recorded, Mapping):
         before = cast("Mapping[str, object]", recorded)
         after = cast("Mapping[str, object]", replayed)

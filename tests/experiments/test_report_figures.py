@@ -6,6 +6,7 @@ import csv
 import math
 from pathlib import Path
 from statistics import fmean
+from typing import Any
 
 import pytest
 from statsmodels.stats.contingency_tables import mcnemar as mcnemar_oracle
@@ -89,7 +90,7 @@ def test_paired_tests_equal_an_independent_computation(folders: tuple[Path, Path
         table = [[0, 0], [0, 0]]
         for episode, success in full.items():
             table[1 - success][1 - other[episode]] += 1
-        oracle = mcnemar_oracle(table, exact=True)
+        oracle: Any = mcnemar_oracle(table, exact=True)
         assert int(record["only_with"]) == table[0][1]
         assert int(record["only_compared"]) == table[1][0]
         assert float(record["mcnemar_p"]) == pytest.approx(oracle.pvalue, abs=1e-12)

@@ -29,8 +29,8 @@ def test_more_evidence_never_turns_a_stop_into_less():
     for row in LADDER:
         for place in range(3):
             if row[place] < 1 and not (place == 2 and row[2] == -1):
-                more = (*row[:place], row[place] + 1, *row[place + 1 :])
-                assert order[LADDER[more]] >= order[LADDER[row]]
+                more = Evidence(*(*row[:place], row[place] + 1, *row[place + 1 :]))
+                assert order[verdict_of(more)] >= order[LADDER[row]]
 
 
 def test_the_documentation_shows_the_same_table():

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from app.session.opened import ForkAt
 from app.session.story import Story, story_of
 from c2nav_engine.contract.outcome import Ordering
 from c2nav_engine.runner.exchange import Override
@@ -40,12 +41,8 @@ def recording(**header: Any) -> Trace:
 def fork(decision: int = 6) -> Trace:
     """Another answer at a Seeing decision, then on."""
     parent = recording()
-    run = fork_of(
-        parent.header,
-        parent.exchanges,
-        decision,
-        Override(Ordering.of("left", "front"), "person 1"),
-    )
+    override = Override(Ordering.of("left", "front"), "person 1")
+    run = fork_of(ForkAt(parent.header, parent.exchanges, decision, override))
     while run.pending is not None:
         run.advance()
     return as_trace(run, FORK_SHA, parent_sha256=ROOT_SHA, fork_decision=decision)
