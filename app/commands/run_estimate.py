@@ -73,7 +73,7 @@ def _table(found: Estimate) -> Table:
     table = Table(box=None, header_style="bold")
     table.add_column("variant")
     for head in ("episodes", "queries", "tokens in", "tokens out", "cores", "waiting", ""):
-        table.add_column(head, justify="right")
+        table.add_column(head, justify="right", no_wrap=True)
     for share in found.shares:
         table.add_row(*_row(share))
     return table

@@ -170,13 +170,15 @@ def _share(
     free = variants == ("random",)
     own = [row for row in rows if row["variant"] in variants and row["outcome"] != "error"]
     queries = sum(means.queries.values())
-    tokens = None if capabilities is None or free else _tokens(table, means, model, capabilities)
+    tokens = None if capabilities is None else _tokens(table, means, model, capabilities)
+    if free and tokens is not None:
+        tokens = (0.0, 0.0)
     wait_s = 0.0 if free else queries * model.latency_s
     measured = len(own) >= ENOUGH_ROWS
     if measured:
         queries = _mean(own, "queries", queries)
         wait_s = _mean(own, "latency_s", wait_s)
-        if tokens is not None:
+        if tokens is not None and sum(tokens):
             scale = _mean(own, "tokens", sum(tokens)) / sum(tokens)
             tokens = (tokens[0] * scale, tokens[1] * scale)
     core_s = means.core_s + (0.0 if free else queries * model.core_s)

@@ -49,15 +49,20 @@ def planted(episode_id: str, folder: Path) -> tuple[Recording, int]:
     flawless = bench(500).open(OpenSpec(episode_id))
     metrics = run_to_end(flawless).metrics
     assert metrics["success"] == 1
-    path = folder / f"{episode_id}.mcap"
-    run = bench(int(metrics["steps"] or 0)).open(OpenSpec(episode_id, trace=path))
-    wrong = _plant(run)
-    assert run_to_end(run).metrics["success"] == 0
-    return recording_of(read_trace(path), scenes=None), wrong
+    short = bench(int(metrics["steps"] or 0))
+    # A detour next to the goal may still end within its radius, so elections are tried in turn.
+    for nth in range(2, 12):
+        path = folder / f"{episode_id}.{nth}.mcap"
+        run = short.open(OpenSpec(episode_id, trace=path))
+        wrong = _plant(run, nth)
+        if run_to_end(run).metrics["success"] == 0:
+            return recording_of(read_trace(path), scenes=None), wrong
+    message = f"no election of episode {episode_id} spoils it alone"
+    raise AssertionError(message)
 
 
-def _plant(run: EpisodeRun) -> int:
-    """Turn away from the right view once, past the middle of the episode."""
+def _plant(run: EpisodeRun, nth: int) -> int:
+    """Turn away from the right view once, at the first chance from the nth election on."""
     seen = 0
     while run.footer is None:
         ask = run.pending
@@ -65,7 +70,7 @@ def _plant(run: EpisodeRun) -> int:
             right = run.propose().outcome
             keys = ask.question.keys
             seen += 1
-            if seen >= 3 and isinstance(right, Ordering) and right.winner == "front":
+            if seen >= nth and isinstance(right, Ordering) and right.winner == "front":
                 other = next(key for key in keys if key != "front")
                 exchange = run.commit(Override(Ordering.winner_only(other, keys), "test"))
                 assert exchange.decision is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import cv2
@@ -59,7 +60,7 @@ def question(
     legs: tuple[str, ...] = LEGS,
     sketch: str = "It went ahead a few steps, then turned left.",
     keys: tuple[str, ...] | None = None,
-    pictures: dict[str, Picture] | None = None,
+    pictures: Mapping[str, Picture] | None = None,
     now: Picture = GREY,
 ) -> Question:
     """A question of the slot; defaults are the slot's own."""

@@ -61,7 +61,7 @@ def _scores(prompt: Prompt) -> dict[str, float] | None:
     pictures = [item.picture for _, item in labelled if item.picture is not None]
     views = [Pixels(picture) for picture in pictures]
     # The last shared picture is the current view; those before it are the sketch's thumbnails.
-    context = [Pixels(picture) for _, picture in question.context[-1:]]
+    context = [Pixels(picture) for _, picture in question.context]
     leg = judging.words_of_leg(question.legs, question.leg)
     asked = [leg]
     if question.slot is Slot.TRANSITION:
@@ -83,13 +83,15 @@ def _statement_scores(prompt: Prompt, labelled: Labelled, context: Sequence[Pixe
     """Slots whose alternatives are statements: told apart by their words, never by their keys."""
     question = prompt.question
     leg = judging.words_of_leg(question.legs, question.leg)
-    now = context[-1]
+    *earlier, now = context
     if question.slot is Slot.DIRECT:
         actions = judging.action_scores(now, leg=leg, sketch=question.sketch)
         return [_matching(item.text, _ACTION_WORDS, actions) for _, item in labelled]
     if question.slot is Slot.TRANSITION:
         following = judging.words_of_leg(question.legs, question.leg + 1)
-        support = judging.next_leg_support(now, legs=(leg, following), sketch=question.sketch)
+        support = judging.next_leg_support(
+            now, earlier, legs=(leg, following), sketch=question.sketch
+        )
     elif question.slot is Slot.GROUND:
         support = 1.0 if judging.arrived_here(now, leg, sketch=question.sketch) else -1.0
     else:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from c2nav_engine.rankers.reference_cv.pixels import Pixels, Spot
+from c2nav_engine.rankers.reference_cv.pixels import Pixels, Spot, likeness
 from c2nav_engine.rankers.reference_cv.words import (
     FAINT,
     Landmark,
@@ -30,13 +30,21 @@ HANGING_REACH = 0.6
 """[C] Things on walls end above the camera or little below it."""
 LOW_TOP = 0.42
 """[C] Things lower than the camera end below the horizon, but for some tolerance."""
+TALL_REACH = 0.6
+"""[C] Tall things go down well below the horizon."""
 SOLID_FILL = 0.4
 """[C] Furniture fills its outline; foliage does not."""
+LARGEST_SHARE = 0.5
+"""[C] A patch over half the picture is a wall or a floor, not a thing."""
 FEW, SEVERAL, MANY = 1, 2, 3
 """The sketch's words for how far a leg went."""
-AMOUNT_SUPPORT = {0: 0.1, FEW: -0.5, SEVERAL: -0.2, MANY: 0.35}
+AMOUNT_SUPPORT = {0: 0.1, FEW: -0.5, SEVERAL: -0.2, MANY: 0.25}
 """[C] What the way made in a leg says for the next one: it is asked past the progress gate only,
 so nothing said (no sketch) leans onward."""
+SAME_ROOM = 0.35
+"""[C] Likeness of two views above which they are taken to show one room."""
+ROOM_CHANGE = 0.8
+"""[C] Weight of a change of room."""
 
 
 def direction_scores(
@@ -58,14 +66,20 @@ def direction_scores(
     ]
 
 
-def next_leg_support(now: Pixels, *, legs: tuple[LegWords, LegWords], sketch: str) -> float:
+def next_leg_support(
+    now: Pixels, earlier: Sequence[Pixels], *, legs: tuple[LegWords, LegWords], sketch: str
+) -> float:
     """Evidence for the next leg minus evidence for this one; 0 when nothing speaks.
 
-    A long way made in this leg, its landmark reached and the next leg's in view speak for the
-    next one; this leg's landmark in view but still far speaks for this one.
+    A long way made in this leg, its landmark reached, surroundings unlike the earlier ones where
+    it leads into another room, and the next leg's landmark in view speak for the next one; this
+    leg's landmark in view but still far speaks for this one.
     """
     this, following = legs
     support = AMOUNT_SUPPORT[amount_in_leg(sketch)]
+    if this.leaves_room and earlier:
+        least = min(likeness(view, now) for view in earlier)
+        support += ROOM_CHANGE * (SAME_ROOM - least)
     if this.target is not None:
         seen = _visibility(now, this.target)
         support += 0.4 if is_near(now, this.target) else -0.4 * seen
@@ -85,10 +99,13 @@ def is_near(view: Pixels, landmark: Landmark) -> bool:
 def seen_spot(view: Pixels, landmark: Landmark) -> Spot:
     """The landmark's patch, or none when its place or shape is not that of such a thing."""
     spot = view.spot(landmark.colour)
-    misplaced = (landmark.hanging and spot.reach > HANGING_REACH) or (
-        landmark.low and spot.top < LOW_TOP
+    misplaced = (
+        (landmark.hanging and spot.reach > HANGING_REACH)
+        or (landmark.low and spot.top < LOW_TOP)
+        or (landmark.tall and (spot.top > LOW_TOP or spot.reach < TALL_REACH))
     )
-    return Spot() if misplaced or spot.fill < SOLID_FILL else spot
+    is_surface = spot.share > LARGEST_SHARE
+    return Spot() if misplaced or is_surface or spot.fill < SOLID_FILL else spot
 
 
 def arrived_here(now: Pixels, leg: LegWords, *, sketch: str) -> bool:
@@ -139,12 +156,9 @@ def _attraction(view: Pixels, landmark: Landmark) -> float:
 
 
 def _visibility(view: Pixels, landmark: Landmark) -> float:
-    """0 (not seen) to 1; a patch over half the picture is a wall or a floor, not a thing."""
-    share = seen_spot(view, landmark).share
+    """0 (not seen) to 1, by size; colours that walls have too count a quarter."""
     trust = 0.25 if landmark.colour in FAINT else 1.0
-    if share > 0.5:
-        trust *= 0.3
-    return trust * min(1.0, math.sqrt(share / 0.05))
+    return trust * min(1.0, math.sqrt(seen_spot(view, landmark).share / 0.05))
 
 
 def _side_prior(side: str, leg: LegWords, sketch: str) -> float:

@@ -17,8 +17,9 @@ from c2nav_engine.contract.question import Picture
 from c2nav_engine.errors import InternalError
 
 _WIDTH_PX = 128
-_COLOURLESS_CHROMA = 8.0
-"""Lab chroma under which a picture's most colourful pixels count as grey; JPEG alone gives 2–4."""
+_COLOURLESS_CHROMA = 2.5
+"""Lab chroma under which a picture's most colourful pixels count as grey: a greyscale picture has
+1 at most after JPEG and rounding, while a plain grey wall in a colour picture has more."""
 _SPOT_FLOOR = 0.002
 """Share of the picture under which a spot is noise."""
 
@@ -97,6 +98,20 @@ class Pixels:
         ]
         return float(np.log1p(middle).mean())
 
+    @functools.cached_property
+    def surroundings(self) -> Float32[np.ndarray, " bins"]:
+        """Colour histogram above the horizon, where walls are: another room, another histogram."""
+        rows = self._bgr.shape[0]
+        lab = cv2.cvtColor(self._bgr[rows // 5 : rows * 11 // 20], cv2.COLOR_BGR2LAB)
+        counts = cv2.calcHist([lab], [0, 1, 2], None, [4, 12, 12], [0, 256, 104, 152, 104, 152])
+        bins: Float32[np.ndarray, " bins"] = np.asarray(counts, dtype=np.float32).ravel()
+        return bins / max(1.0, float(bins.sum()))
+
+
+def likeness(first: Pixels, second: Pixels) -> float:
+    """How alike the surroundings of two pictures are: the overlap of their histograms, 0 to 1."""
+    return float(np.minimum(first.surroundings, second.surroundings).sum())
+
 
 def _decoded(jpeg: bytes) -> Bgr:
     bgr = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
@@ -128,12 +143,12 @@ class _Range:
 
 
 _COLOURS: dict[str, _Range] = {
-    "red": _Range((171, 6), (130, 255), (70, 255)),
+    "red": _Range((175, 6), (130, 255), (105, 255)),
     "crimson": _Range((165, 178), (140, 255), (60, 220)),
     "coral": _Range((2, 10), (110, 190), (170, 255)),
     "mint": _Range((60, 85), (30, 110), (150, 255)),
     "plum": _Range((145, 165), (70, 255), (40, 170)),
-    "maroon": _Range((165, 8), (90, 255), (40, 140)),
+    "maroon": _Range((168, 8), (90, 255), (40, 125)),
     "orange": _Range((7, 18), (140, 255), (150, 255)),
     "brown": _Range((4, 20), (60, 255), (40, 165)),
     "yellow": _Range((22, 34), (120, 255), (150, 255)),
@@ -148,6 +163,7 @@ _COLOURS: dict[str, _Range] = {
     "purple": _Range((128, 155), (70, 255), (40, 220)),
     "magenta": _Range((145, 170), (110, 255), (80, 255)),
     "pink": _Range((150, 178), (35, 130), (140, 255)),
+    "wood": _Range((6, 21), (85, 210), (50, 225)),
     "white": _Range(saturation=(0, 30), value=(215, 255)),
     "grey": _Range(saturation=(0, 35), value=(70, 200)),
     "black": _Range(value=(0, 48)),

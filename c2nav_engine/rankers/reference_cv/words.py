@@ -46,10 +46,17 @@ COLOUR_WORDS = {
     "grey": "grey",
     "gray": "grey",
 }
-COLOURED_THINGS = {"plant": "green", "plants": "green", "tree": "green", "bush": "green"}
+_WHITE_WARE = ("sink", "bathtub", "tub", "toilet", "basin")
+_WOODEN = ("wardrobe", "bookshelf", "bookcase", "cabinet", "dresser", "piano")
+COLOURED_THINGS = {
+    **dict.fromkeys(("plant", "plants", "tree", "bush"), "green"),
+    **dict.fromkeys(("television", "tv"), "black"),
+    **dict.fromkeys(_WHITE_WARE, "white"),
+    **dict.fromkeys(_WOODEN, "wood"),
+}
 """Things whose usual colour stands in for one that is not said."""
 
-FAINT = frozenset({"white", "grey", "black", "brown"})
+FAINT = frozenset({"white", "grey", "black", "brown", "wood"})
 """Colours that walls, floors and shadows have too: weak evidence for a thing."""
 
 HANGING = frozenset(
@@ -58,9 +65,23 @@ HANGING = frozenset(
 """Things on walls: they end above the eye's height, and their lower edge tells no distance."""
 _SEATS = ("sofa", "couch", "bench", "ottoman", "beanbag", "armchair", "chair", "stool", "pouf")
 LOW = frozenset(
-    [*_SEATS, "bed", "chest", "rug", "mat", "runner", "table", "suitcase", "ball", "basket"]
+    [
+        *_SEATS,
+        *_WHITE_WARE,
+        "bed",
+        "chest",
+        "rug",
+        "mat",
+        "runner",
+        "table",
+        "suitcase",
+        "ball",
+        "basket",
+    ]
 )
 """Things lower than the camera: they end below the horizon."""
+TALL = frozenset(_WOODEN)
+"""Things that reach from the floor past the camera's height."""
 
 _COLOUR = re.compile(rf"\b(?:{'|'.join([*COLOUR_WORDS, *COLOURED_THINGS])})\b")
 _LEAVING = re.compile(
@@ -75,6 +96,7 @@ _SLIGHT = re.compile(r"\b(?:slight|slightly|little|bit)\b")
 _ON_SIDE = re.compile(
     r"\b(?:into|in|through|enter|to)\b[^,.;]{0,40}\bon (?:the|your) (left|right)\b"
 )
+_LEAVES_ROOM = re.compile(r"\b(?:into|exit|leave|enter|through|out of|doorway|archway|door)\b")
 _OPENING_WORDS = 4
 """A turn that begins within so many words opens its leg ("Then turn left and …")."""
 
@@ -104,6 +126,11 @@ class Landmark:
         """Whether it is lower than the camera."""
         return self.noun in LOW
 
+    @property
+    def tall(self) -> bool:
+        """Whether it reaches from the floor past the camera's height."""
+        return self.noun in TALL
+
 
 @dataclass(frozen=True, slots=True)
 class Turn:
@@ -128,12 +155,14 @@ class LegWords:
         landmarks: Coloured things, in order of mention.
         turn: The first turn, if there is one.
         exit_side: On which side the leg leaves ("into the bedroom on your left"), or "".
+        leaves_room: Whether the leg leads into another room.
         spoken_colour: Whether a colour word itself is there, so that only colour can decide.
     """
 
     landmarks: tuple[Landmark, ...]
     turn: Turn | None
     exit_side: str
+    leaves_room: bool
     spoken_colour: bool
 
     @property
@@ -159,7 +188,13 @@ def read_leg(leg: str) -> LegWords:
         for match in chosen
     )
     side = _ON_SIDE.search(folded)
-    return LegWords(landmarks, _turn(folded), side.group(1) if side else "", bool(spoken))
+    return LegWords(
+        landmarks=landmarks,
+        turn=_turn(folded),
+        exit_side=side.group(1) if side else "",
+        leaves_room=_LEAVES_ROOM.search(folded) is not None,
+        spoken_colour=bool(spoken),
+    )
 
 
 def turns_made(sketch: str, side: str) -> int:
@@ -194,6 +229,8 @@ def _this_leg(sketch: str) -> str:
 
 
 def _noun(text: str, match: re.Match[str]) -> str:
+    if match.group() in COLOURED_THINGS:
+        return match.group()
     found = re.match(r"\W*(\w+)", text[match.end() :])
     return found.group(1) if found else ""
 
