@@ -85,6 +85,7 @@ def spoilt(tmp_path_factory) -> tuple[Recording, int]:
     return planted("1", tmp_path_factory.mktemp("turning"))
 
 
+@pytest.mark.slow
 def test_regret_names_the_planted_answer_first(spoilt):
     recording, wrong = spoilt
     worst = min(regrets_of(recording), key=lambda regret: regret.weight)
@@ -93,6 +94,7 @@ def test_regret_names_the_planted_answer_first(spoilt):
     assert worst.regret_m > 0.3
 
 
+@pytest.mark.slow
 def test_changing_the_planted_answer_alone_succeeds_beside_a_failing_control(spoilt):
     recording, wrong = spoilt
     seats = seats_for("simulated", NOISELESS)
@@ -103,6 +105,7 @@ def test_changing_the_planted_answer_alone_succeeds_beside_a_failing_control(spo
     assert (front.changed, front.control, front.verdict) == (1, 0, TURNING)
 
 
+@pytest.mark.slow
 def test_what_was_tried_is_not_tried_again(spoilt):
     recording, wrong = spoilt
     seats = seats_for("simulated", NOISELESS)
@@ -112,6 +115,7 @@ def test_what_was_tried_is_not_tried_again(spoilt):
     assert known == []
 
 
+@pytest.mark.slow
 def test_no_further_answer_is_tried_once_the_queries_are_spent(spoilt):
     recording, wrong = spoilt
     budget = Budget(repeats=1, max_queries=0)
@@ -120,6 +124,7 @@ def test_no_further_answer_is_tried_once_the_queries_are_spent(spoilt):
     assert list(tried) == []
 
 
+@pytest.mark.slow
 def test_the_last_recoverable_decision_is_not_past_the_planted_one(spoilt):
     recording, wrong = spoilt
     found = last_recoverable(recording)
@@ -128,6 +133,7 @@ def test_the_last_recoverable_decision_is_not_past_the_planted_one(spoilt):
     assert found.tried[found.decision]
 
 
+@pytest.mark.slow
 def test_going_on_without_a_change_reproduces_the_record(spoilt):
     recording, wrong = spoilt
     after = next(e for e in recording.questions if (e.decision or 0) > wrong)
@@ -149,6 +155,7 @@ def test_a_flip_counts_only_beside_its_control():
     assert replace(base, changed=0).verdict == "no success"
 
 
+@pytest.mark.slow
 def test_the_table_is_read_back_and_says_what_the_episode_was(spoilt, tmp_path):
     recording, wrong = spoilt
     flip = Flip(wrong, Slot.SEEING, "front", changed=1, control=0, repeats=1, queries=4)
