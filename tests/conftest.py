@@ -5,12 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 from jaxtyping import install_import_hook
 
 from tests.helpers import checker
 
 # Shapes and types in the engine's signatures hold in every test, or the test fails.
 install_import_hook("c2nav_engine", f"{checker.__name__}.checked")
+
+# The same examples in every run, on every machine: a red test stays red, a green one green.
+settings.register_profile("repeatable", derandomize=True, deadline=None)
+settings.load_profile("repeatable")
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 

@@ -60,6 +60,13 @@ def test_bca_moves_with_its_values(sample: list[float], shift: float) -> None:
         assert before.low <= before.high
 
 
+def test_bca_scales_with_its_values() -> None:
+    sample = [0.0, 1.0, 1.0, 5.0]
+    usual, tiny = (bca_mean([s * v for v in sample], seed=3) for s in (1.0, 2.0**-500))
+    assert tiny.high == usual.high * 2.0**-500
+    assert tiny.low == usual.low * 2.0**-500
+
+
 def test_bca_is_seeded() -> None:
     sample = [0.13, 0.29, 0.97, 1.01, 0.43]
     assert bca_mean(sample, seed=1) == bca_mean(sample, seed=1)

@@ -90,8 +90,10 @@ def _bca_ends(
     below = np.count_nonzero(means < mean - rounding)
     at_or_below = np.count_nonzero(means <= mean + rounding)
     bias = float(ndtri((below + at_or_below) / (2 * len(means))))
-    # The jackknife of a mean is linear in the values: only their skewness is left.
+    # The jackknife of a mean is linear in the values: only their skewness is left. It has no unit,
+    # so the values are scaled first: cubes of very small ones would vanish.
     centred = sample - mean
+    centred /= np.abs(centred).max()
     acceleration = float((centred**3).sum() / (6.0 * (centred**2).sum() ** 1.5))
     z = ndtri(np.array([0.5 - level / 2.0, 0.5 + level / 2.0]))
     shifted = bias + (bias + z) / (1.0 - acceleration * (bias + z))
