@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import tyro
@@ -10,6 +11,7 @@ from rich.console import Console
 from app.commands.options import RankerOptions, ScenesOpt, key_values
 from app.commands.sources import opened_source, opened_traces, trace_files
 from app.gateway.serving import Address, serve, tunnel_line
+from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.rankers import DEFAULT_RANKER
 from c2nav_engine.experiments.spec import Setting
 
@@ -21,6 +23,15 @@ def inspect(
         tyro.conf.arg(metavar="SOURCE|TRACE…|RUN", help="`builtin` by default."),
     ] = ("builtin",),
     scenes: ScenesOpt = None,
+    with_: Annotated[
+        tuple[Path, ...],
+        tyro.conf.UseAppendAction,
+        tyro.conf.arg(
+            name="with",
+            metavar="REEVAL.parquet",
+            help="Answers of `c2nav reeval` beside the recorded ones; repeat for more.",
+        ),
+    ] = (),
     ranker: str = DEFAULT_RANKER,
     ranker_opt: RankerOptions = (),
     profile: str = "vlnce",
@@ -38,7 +49,10 @@ def inspect(
         ranker_options=key_values(ranker_opt),
     )
     setting.check()
-    opened = opened_traces(traces, setting) if traces else opened_source(setting)
+    if with_ and not traces:
+        message = f"expected traces or a run folder beside --with, came {' '.join(what)}"
+        raise UsageError(message)
+    opened = opened_traces(traces, setting, beside=with_) if traces else opened_source(setting)
     serve(opened, host=host, port=port, no_browser=no_browser, ready=_tell)
     return 0
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from app.session.opened import Choice, Entry, ForkAt, Opened, Opening, Run
+from app.session.reasked import NOTHING, ByDecision, by_trace
 from c2nav_engine.contract.question import Picture
 from c2nav_engine.episodes.profile import Profile, profile_named
 from c2nav_engine.errors import SceneError, UsageError
@@ -122,8 +124,20 @@ class Live:
         )
 
 
-def opened_traces(paths: Sequence[Path], setting: Setting) -> Opened:
-    """Recorded episodes; forks where the scene is to be had."""
+def opened_traces(
+    paths: Sequence[Path], setting: Setting, *, beside: Sequence[Path] = ()
+) -> Opened:
+    """Recorded episodes; forks where the scene is to be had.
+
+    Args:
+        paths: The traces.
+        setting: Where scenes lie, and who answers in forks.
+        beside: Re-evaluations whose answers stand beside the recorded ones.
+
+    Raises:
+        C2NavError: A trace or re-evaluation cannot be read, or a re-evaluation is of other traces.
+    """
+    reasked = _reasked(paths, beside)
     entries = tuple(_entry(path) for path in paths)
     by_id = {entry.entry_id: path for entry, path in zip(entries, paths, strict=True)}
     scenes = Path(setting.scenes) if setting.scenes else None
@@ -132,10 +146,34 @@ def opened_traces(paths: Sequence[Path], setting: Setting) -> Opened:
         title=title,
         entries=entries,
         first=Choice(entries[0].entry_id, ranker=setting.ranker),
-        open=lambda choice: _recorded(by_id[choice.entry_id], scenes),
+        open=lambda choice: _recorded(by_id[choice.entry_id], scenes, reasked),
         fork=partial(_fork_recorded, setting),
         rankers=tuple(RANKERS),
     )
+
+
+def _reasked(paths: Sequence[Path], files: Sequence[Path]) -> Mapping[str, ByDecision]:
+    """Digest of a trace → what re-evaluations say of it; each must speak of one that is open."""
+    if not files:
+        return {}
+    from c2nav_engine.experiments.reeval_table import read_table
+
+    digests: set[str] = set()
+    for path in paths:
+        with open_trace(path) as trace:
+            digests.add(trace.sha256)
+    rows: list[Mapping[str, Any]] = []
+    for file in files:
+        own = read_table(file)
+        if digests.isdisjoint(row["trace_sha256"] for row in own):
+            asked = ", ".join(sorted({str(row["trace"]) for row in own})) or "nothing"
+            message = (
+                f"expected a re-evaluation of what is opened, came {file}, which is of {asked}; "
+                "open that trace, or its run folder"
+            )
+            raise UsageError(message)
+        rows += own
+    return by_trace(rows)
 
 
 def _entry(path: Path) -> Entry:
@@ -162,7 +200,7 @@ def _first_picture(path: Path) -> Picture | None:
     return shown[len(shown) // 2] if shown else None
 
 
-def _recorded(path: Path, scenes: Path | None) -> Opening:
+def _recorded(path: Path, scenes: Path | None, reasked: Mapping[str, ByDecision]) -> Opening:
     trace = read_trace(path)
     source = source_of_record(trace.header, scenes)
     scene_id = trace.header.episode.scene_id
@@ -187,6 +225,7 @@ def _recorded(path: Path, scenes: Path | None) -> Opening:
         scene=None if why else load,
         surface=None if why else floor,
         no_scene=why,
+        reasked=reasked.get(trace.sha256, NOTHING),
     )
 
 

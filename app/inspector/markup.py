@@ -47,6 +47,11 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str | Markup]]) -> Markup
     ).format(top, body)
 
 
+def wide(content: Markup) -> Markup:
+    """Something that may be wider than its panel: it scrolls within it."""
+    return Markup('<div class="c2-wide">{}</div>').format(content)
+
+
 def quote(text: str | Markup) -> Markup:
     """Literal prompt text."""
     return Markup('<pre class="c2-pre">{}</pre>').format(text)

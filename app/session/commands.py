@@ -96,7 +96,7 @@ class Seek(Command):
     """Choose which disagreement `next_disagreement` looks for."""
 
     type: Literal["seek"] = "seek"
-    kind: Literal["any", "orders", "person", "best"]
+    kind: Literal["any", "orders", "person", "reasked", "best"]
 
 
 # ---------------------------------------------------------------- answering

@@ -131,6 +131,7 @@ class Desk:
             story=self.stories[branch.branch_id],
             stop=0,
             no_scene=opening.no_scene,
+            reasked=opening.reasked,
         )
 
     def _root(self, opening: Opening) -> Branch:

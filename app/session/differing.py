@@ -1,20 +1,23 @@
-"""Disagreements: between presentation orders, model and person, committed and best."""
+"""Disagreements: between orders, model and person or re-evaluation, committed and best."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Literal
 
 from app.session.decisions import Decision
-from app.session.snapshot import SUSPECT_M, Assessment
+from app.session.reasked import Reasked
+from app.session.snapshot import SUSPECT_M, Assessment, Snapshot
+from app.session.wording import is_fault
 from c2nav_engine.contract.outcome import ORDERS_DISAGREE, Abstention, Answered, Key, Ordering
 
-Kind = Literal["any", "orders", "person", "best"]
+Kind = Literal["any", "orders", "person", "reasked", "best"]
 
 KINDS: Mapping[Kind, str] = {
     "any": "any disagreement",
     "orders": "two presentation orders",
     "person": "model and person",
+    "reasked": "model and re-evaluation",
     "best": "committed and best offered",
 }
 
@@ -46,11 +49,28 @@ def best_differs(assessment: Assessment | None) -> bool:
     return assessment is not None and (assessment.regret_m or 0.0) >= SUSPECT_M
 
 
-def disagrees(decision: Decision, assessment: Assessment | None, kind: Kind) -> bool:
-    """Whether a decision shows a disagreement of a kind."""
+def reasked_differ(decision: Decision, reasked: Iterable[Reasked]) -> tuple[Reasked, ...]:
+    """Answers of a re-evaluation that elect something else than the recorded ranker did.
+
+    An answer that cannot be used says nothing against the recorded one.
+    """
+    if decision.ranked is None:
+        return ()
+    recorded = winner(decision.ranked.outcome)
+    return tuple(
+        answer
+        for answer in reasked
+        if winner(answer.outcome) != recorded and not is_fault(answer.outcome)
+    )
+
+
+def disagrees(snapshot: Snapshot, decision: Decision, kind: Kind) -> bool:
+    """Whether a decision of the branch in view shows a disagreement of a kind."""
+    number = decision.number
     found = {
         "orders": orders_differ(decision),
         "person": person_differs(decision),
-        "best": best_differs(assessment),
+        "reasked": bool(reasked_differ(decision, snapshot.reasked_at(number))),
+        "best": best_differs(snapshot.assessments.get(number)),
     }
     return any(found.values()) if kind == "any" else found[kind]

@@ -118,7 +118,7 @@ def jump(desk: Desk, to: str) -> None:
     kind = desk.snapshot.view.kind
 
     def wanted(decision: Decision) -> bool:
-        return disagrees(decision, desk.snapshot.assessments.get(decision.number), kind)
+        return disagrees(desk.snapshot, decision, kind)
 
     _first(desk, order, wanted, f"None that way: {KINDS[kind]}")
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
+from app.session.reasked import NOTHING, ByDecision
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.contract.question import Picture
 from c2nav_engine.navigator.requests import Request
@@ -99,6 +100,7 @@ class Opening:
         scene: Loads the scene for display; None where it is not to be had.
         surface: Loads the floor, for suspects; None where it is not to be had.
         no_scene: Why there is no scene, and what to do about it.
+        reasked: What a re-evaluation says of the recording, by decision.
     """
 
     header: Header
@@ -110,6 +112,7 @@ class Opening:
     scene: Callable[[], Scene] | None = None
     surface: Callable[[], Surface] | None = None
     no_scene: str = ""
+    reasked: ByDecision = field(default_factory=lambda: NOTHING)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from app.session.branches import Branch
 from app.session.decisions import Decision
 from app.session.draft import Draft
 from app.session.opened import Choice, Entry
+from app.session.reasked import NOTHING, ByDecision, Reasked, shared_until
 from app.session.story import Stop, Story
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.geometry import Point
@@ -141,7 +142,7 @@ class View:
     """
 
     camera: str = "free"
-    kind: Literal["any", "orders", "person", "best"] = "any"
+    kind: Literal["any", "orders", "person", "reasked", "best"] = "any"
     layers: frozenset[str] = LAYERS_AT_FIRST
     hovered: str = ""
 
@@ -185,6 +186,7 @@ class Snapshot:
         parent: For a fork, the story it left.
         place: The asked place, and where it was seen in the branch in view.
         assessed: Branch → decision → what the truth says of it.
+        reasked: Decision of the root → what a re-evaluation says of its question.
     """
 
     version: int
@@ -212,6 +214,7 @@ class Snapshot:
     assessed: dict[str, dict[int, Assessment]] = field(
         default_factory=dict[str, dict[int, Assessment]]
     )
+    reasked: ByDecision = field(default_factory=lambda: NOTHING)
 
     @property
     def here(self) -> Stop:
@@ -227,6 +230,16 @@ class Snapshot:
     def assessments(self) -> dict[int, Assessment]:
         """What the truth says of the decisions of the branch in view, as far as it is known."""
         return self.assessed.get(self.branch.branch_id, {})
+
+    def reasked_at(self, decision: int) -> tuple[Reasked, ...]:
+        """Answers of a re-evaluation to a decision of the branch in view.
+
+        A fork has its questions in common with the recording up to where it left.
+        """
+        shared = shared_until(self.branch, self.branches)
+        if shared is not None and decision > shared:
+            return ()
+        return self.reasked.get(decision, ())
 
     @property
     def suspects(self) -> tuple[Assessment, ...]:

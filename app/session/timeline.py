@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from app.session.decisions import Decision
+from app.session.differing import reasked_differ
 from app.session.snapshot import SUSPECT_M, Judgement, Snapshot
 from app.session.story import Story
 from app.session.wording import is_fault, outcome_words, slot_words
@@ -30,7 +31,11 @@ def timeline_of(snapshot: Snapshot) -> Json:
         "curve": _curve(story),
         "ghost": None if parent is None else {"curve": _curve(parent), "marks": _marks(parent)},
         "marks": _marks(story),
-        "events": [*_events(story), *_people(story, snapshot.judgements)],
+        "events": [
+            *_events(story),
+            *_people(story, snapshot.judgements),
+            *_reasked(snapshot),
+        ],
         "legs": _legs(story),
         "place": _place(snapshot),
         "regret": [
@@ -103,6 +108,18 @@ def _people(story: Story, judgements: dict[int, Judgement]) -> list[Json]:
         if number < len(story.decisions)
     ]
     return [*overrides, *reviews]
+
+
+def _reasked(snapshot: Snapshot) -> list[Json]:
+    """Where a re-evaluation elects something else than the recording."""
+    found: list[Json] = []
+    for decision in snapshot.story.decisions:
+        others = reasked_differ(decision, snapshot.reasked_at(decision.number))
+        if others:
+            rankers = ", ".join(dict.fromkeys(answer.ranker for answer in others))
+            words = f"asked again at decision {decision.number}: {rankers} differs"
+            found.append({"sign": "≠", "step": decision.step, "fault": False, "words": words})
+    return found
 
 
 def _place(snapshot: Snapshot) -> Json | None:
