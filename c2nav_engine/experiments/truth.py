@@ -165,8 +165,12 @@ def slot_truth(course: Course, moment: Moment, ask: Ask) -> SlotTruth:
     offered = [item for item in ask.facts.candidates if item.key in question.keys]
     here_m = course.field.distance_m(moment.pose.position_m)
     match question.slot:
-        case Slot.SEEING | Slot.DIRECT:
+        case Slot.SEEING:
             target = best_view(goal_after_m(course, moment.pose, offered), offered)
+        case Slot.DIRECT:
+            # Nothing was vetoed before this question: what cannot move a step is not right [C].
+            movable = [item for item in offered if _steps_along(course, item) > 0]
+            target = best_view(goal_after_m(course, moment.pose, movable), movable)
         case Slot.GLANCE:
             target = best_sector(course, moment.pose, offered)
         case Slot.TRANSITION:
@@ -193,14 +197,11 @@ def goal_after_m(course: Course, pose: Pose, candidates: Sequence[Candidate]) ->
     A candidate that was vetoed, or whose free space is unknown, gets the longest bundle: where it
     would have led. As in execution, a collision ends it.
     """
-    body, limits = course.body, course.controller
+    body = course.body
     ends: dict[Key, float] = {}
     for candidate in candidates:
-        steps = limits.bundle_steps
-        if candidate.feasible and candidate.free_m is not None:
-            steps = bundle_steps(candidate.free_m, step_m=course.profile.step_m, config=limits)
         end = pose.turned(_offset_rad(candidate))
-        for _ in range(steps):
+        for _ in range(_steps_along(course, candidate)):
             step = body.forward(end)
             end = step.pose
             if step.collided:
@@ -264,6 +265,13 @@ def better_frame(course: Course, moment: Moment, offered: Sequence[Candidate]) -
     gap_m = abs(goal_m["now"] - goal_m["back"])
     # Two unreachable places differ by nan, which is no target either.
     return min(goal_m, key=lambda key: goal_m[key]) if gap_m >= LOOKBACK_TIE_M else None
+
+
+def _steps_along(course: Course, candidate: Candidate) -> int:
+    limits = course.controller
+    if not candidate.feasible or candidate.free_m is None:
+        return limits.bundle_steps
+    return bundle_steps(candidate.free_m, step_m=course.profile.step_m, config=limits)
 
 
 def _offset_rad(candidate: Candidate) -> float:

@@ -121,12 +121,14 @@ def _direct(state: State) -> Silent:
         yield from fallback(state, _why(answered))
         return
     view = fan[views[winner]]
+    aim = turns(view.offset_rad, profile.turn_rad)
     steps = bundle_steps(view.free_m, step_m=profile.step_m, config=config)
     if steps == 0:
+        # As under spatial inversion [C]: the body turns where it was told, and that is all.
+        yield from move(state, aim, "direct")
         yield from fallback(state, f"free {view.free_m:.1f} m {winner}, no step fits")
         return
-    actions = (*turns(view.offset_rad, profile.turn_rad), *(Action.FORWARD,) * steps)
-    yield from _walk(state, actions, "direct", answered=True)
+    yield from _walk(state, (*aim, *(Action.FORWARD,) * steps), "direct", answered=True)
 
 
 def _glance(state: State, reason: str) -> Silent:

@@ -170,6 +170,21 @@ def test_direct_action_has_the_same_target_under_its_own_words() -> None:
     assert target(Slot.DIRECT, at(turned), candidates=actions) == "left"
 
 
+def test_direct_action_is_never_right_where_no_step_fits() -> None:
+    def actions(ahead_m: float, aside_m: float) -> tuple[Candidate, ...]:
+        return tuple(
+            replace(item, key="forward", free_m=ahead_m)
+            if item.key == "front"
+            else replace(item, free_m=aside_m)
+            for item in fan()
+        )
+
+    away = at(Pose(START.position_m, math.pi))
+    # Both sides lead away from the goal and are still better than to push a wall.
+    assert target(Slot.DIRECT, away, candidates=actions(0.3, 2.0)) in {"left", "right"}
+    assert target(Slot.DIRECT, away, candidates=actions(0.3, 0.3)) is None
+
+
 def test_bundles_are_bounded_by_free_space_and_end_at_a_collision() -> None:
     ends = goal_after_m(course(), START, fan(free_m=0.75))
     assert ends["front"] == pytest.approx(8.0 - 0.5)

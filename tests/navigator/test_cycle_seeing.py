@@ -159,9 +159,9 @@ def test_direct_action_moves_forward_and_turns_by_the_fan_offset():
     assert moves[1].actions == (Action.RIGHT,) * 3 + (Action.FORWARD,) * 3
 
 
-def test_direct_action_that_cannot_move_a_step_is_a_fallback_without_a_turn():
+def test_direct_action_that_cannot_move_a_step_turns_and_is_a_fallback():
     tale = drive(task("no-seeing"), prefer(direct="left"), Floor(free_m={"left": 0.3}), asks=2)
-    assert tale.moves("direct") == []
+    assert tale.moves("direct")[0].actions == (Action.LEFT,) * 3
     assert tale.events("fallback")[0].detail == "free 0.3 m left, no step fits"
 
 
