@@ -9,8 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 
-import numpy as np
-
 from app.session.decisions import Decision
 from app.session.opened import Opening
 from app.session.snapshot import Assessment
@@ -19,7 +17,8 @@ from c2nav_engine.contract.question import Slot
 from c2nav_engine.errors import C2NavError
 from c2nav_engine.experiments.regret import controller_fault, regret_m
 from c2nav_engine.experiments.truth import Course, course_of, goal_after_m, true_leg
-from c2nav_engine.geometry import Point, Pose
+from c2nav_engine.geometry import Pose
+from c2nav_engine.metrics.off_path import off_path_m
 from c2nav_engine.navigator.config import LoopConfig
 from c2nav_engine.runner.record import Header
 from c2nav_engine.world.surface import Surface
@@ -117,17 +116,3 @@ def _turned(course: Course, pose: Pose, decision: Decision) -> str:
     if decision.elected == "next" and past <= question.leg:
         return EARLY
     return LATE if decision.elected == "stay" and past > question.leg else ""
-
-
-def off_path_m(point_m: Point, path_m: tuple[Point, ...]) -> float | None:
-    """Horizontal distance from a polyline; None without one."""
-    if not path_m:
-        return None
-    corners = np.array(path_m)[:, (0, 2)]
-    here = np.array([point_m[0], point_m[2]])
-    if len(corners) == 1:
-        return float(np.linalg.norm(corners[0] - here))
-    starts, along = corners[:-1], np.diff(corners, axis=0)
-    squared = np.maximum((along * along).sum(axis=1), 1e-12)
-    part = (((here - starts) * along).sum(axis=1) / squared).clip(0.0, 1.0)
-    return float(np.linalg.norm(starts + along * part[:, None] - here, axis=1).min())

@@ -5,13 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from app.session.assessing import Assessor, off_path_m
+from app.session.assessing import Assessor
 from app.session.placing import DepthSight, SceneSight, looks_of, place_of, point_at
 from app.session.snapshot import suspects_of
 from app.session.story import Story, story_of
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.contract.question import Question, Slot
 from c2nav_engine.geometry import Point, Pose, world_from_camera, wrap_rad
+from c2nav_engine.metrics.off_path import off_path_m
 from c2nav_engine.world.scene import Material, Piece, Scene, scene_of
 from tests.helpers import stage
 from tests.helpers.meshes import slab, surface_of
