@@ -2,6 +2,8 @@
 const token = new URLSearchParams(location.search).get("token") ?? "";
 const at = (id) => document.getElementById(id);
 
+const farewell = `Nothing is left to judge.${globalThis.packedDesk ? " Save your answers and send the file back." : ""} Thank you.`;
+
 let item = null; // the question on the page
 let tiers = []; // labels from best to worst
 let none = false;
@@ -13,6 +15,8 @@ let waiting = false;
 let answerId = "";
 
 async function call(name, body = {}) {
+  // A packed page brings its own desk and asks nothing of any network.
+  if (globalThis.packedDesk) return globalThis.packedDesk(name, body);
   const answer = await fetch(`judge/${name}`, {
     method: "POST",
     headers: { "Content-Type": "application/json", "X-Judge-Token": token },
@@ -54,7 +58,7 @@ async function show(said) {
   at("bar").value = said.done;
   at("bar").max = Math.max(1, said.total);
   at("progress").textContent = `${said.done} of ${said.total}`;
-  const parts = item ? item.question.parts.map(part) : [part({ text: "Nothing is left to judge. Thank you." })];
+  const parts = item ? item.question.parts.map(part) : [part({ text: farewell })];
   at("question").replaceChildren(...parts);
   at("choices").replaceChildren(...(item ? item.question.labels.map(choice) : []));
   enlarge();

@@ -109,6 +109,27 @@ def status(run: RunArg, name: NameOpt, json: JsonOpt = False) -> int:
     return 0
 
 
+def pack(
+    run: RunArg,
+    name: NameOpt,
+    out: Annotated[Path, tyro.conf.arg(metavar="DIR", help="Where the pages are written.")],
+    person: Annotated[str, tyro.conf.arg(help="Only for this person.")] = "",
+    json: JsonOpt = False,
+) -> int:
+    """Write one page a person that judges from a file, without any network."""
+    from app.commands.packing import pack_study
+
+    written = pack_study(read_study(run, name), out=out, only=person)
+    if json:
+        print_json({"packed": {each: str(path) for each, path in written.items()}})
+        return 0
+    console = Console(highlight=False)
+    for each, path in written.items():
+        size = path.stat().st_size / 1e6
+        console.print(f"{each}: {path} ({size:.1f} MB)", markup=False, soft_wrap=True)
+    return 0
+
+
 def import_(
     run: RunArg,
     files: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="FILE.jsonl…")],
@@ -117,13 +138,16 @@ def import_(
 ) -> int:
     """Take in answers that were given elsewhere; a file is taken whole or refused."""
     from app.reviews.importing import import_answers
+    from app.reviews.packed import is_packed, packed_events
     from app.reviews.store import read_lines, store_of
 
     study = read_study(run, name)
     taken: dict[str, int] = {}
     with store_of(study.run) as store:
         for path in files:
-            events = read_lines(_lines(path), where=str(path))
+            lines = _lines(path)
+            read = packed_events(study, lines, where=str(path)) if is_packed(lines) else None
+            events = read_lines(lines, where=str(path)) if read is None else read
             taken[str(path)] = import_answers(study, store, events, where=str(path))
     if json:
         print_json({"imported": taken})
@@ -189,6 +213,7 @@ study = {
     "make": make,
     "add-person": add_person,
     "status": status,
+    "pack": pack,
     "serve": serve,
     "export": export,
     "import": import_,

@@ -16,8 +16,9 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.gateway.assets import assets
 from app.gateway.doors import Doors
 from app.pages.judge import judge_page, question_json
-from app.reviews.desk import Desk, Submission, Taken
+from app.reviews.desk import Desk, Taken
 from app.reviews.study import Person, read_study, study_names
+from app.reviews.submissions import Submission
 from c2nav_engine.errors import InputError, UsageError
 
 _ASSETS = ("judge.js", "judge.css")

@@ -7,33 +7,28 @@ never sent ahead of time: a later question would tell an earlier answer.
 
 from __future__ import annotations
 
-import re
 import threading
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 
-from app.reviews.events import Event, Kind, Said
-from app.reviews.questions import prompt_at, question_id
+from app.reviews.events import Event, Kind
+from app.reviews.questions import prompt_at
 from app.reviews.queues import Place
 from app.reviews.state import standing
 from app.reviews.store import Store, Writing, store_of
 from app.reviews.study import Person, Study
-from c2nav_engine.contract.outcome import Abstention, Ordering, Tie
+from app.reviews.submissions import Submission, answer_event, checked, undo_event
 from c2nav_engine.contract.prompt import Prompt
-from c2nav_engine.errors import InputError, UsageError
+from c2nav_engine.errors import InputError
 
 LEASE_S = 900.0
 """[C] How long an item that was handed out is kept from others of the same queue."""
 
-NONE = "none"
-"""Reason of the abstention of a person who finds no alternative better."""
-
 _READ_AHEAD = 3
 _KEPT = 64
-_EVENT_ID = re.compile(r"[0-9a-f]{16,64}")
 
 
 class Taken(InputError):
@@ -55,25 +50,6 @@ class Handed:
     total: int
     done: int
     prompt: Prompt
-
-
-@dataclass(frozen=True, slots=True)
-class Submission:
-    """An answer as it comes from a page.
-
-    Attributes:
-        id: Random hex that names this answer; sending it twice stores it once.
-        number: The place that is answered.
-        tiers: Labels from best to worst; () for none. Labels left out are tied behind.
-        response_ms: From the question being drawn to the answer, tab in front or not.
-        hidden_ms: Of these, with the tab hidden.
-    """
-
-    id: str
-    number: int
-    tiers: tuple[tuple[str, ...], ...]
-    response_ms: int = 0
-    hidden_ms: int = 0
 
 
 class Desk:
@@ -121,13 +97,11 @@ class Desk:
             Taken: The place is answered already, or somebody else holds it.
             UsageError: It is no answer to that place.
         """
-        queue = self._queue(person)
-        if not 0 <= answer.number < len(queue) or not _EVENT_ID.fullmatch(answer.id):
-            message = f"expected a place from 0 to {len(queue) - 1}, came {answer.number}"
-            raise UsageError(message)
-        place = queue[answer.number]
+        place = checked(answer, self._queue(person))
         prompt = self._prompt(place).result()
-        event = self._event(person, answer, prompt, place)
+        event = answer_event(
+            self.study, person, answer, place=place, prompt=prompt, when_s=self._clock()
+        )
         with self._store.writing() as writing:
             answered = self._answered(writing, person.queue)
             holder = answered.get(answer.number)
@@ -151,20 +125,14 @@ class Desk:
             if not mine:
                 return False
             last = max(mine, key=lambda event: self._events.index(event))
-            number = sum(event.target == last.id for event in self._events)
-            writing.append(
-                Event(
-                    id=f"{last.id}.undo{number}",
-                    kind=Kind.UNDO,
-                    author=person.name,
-                    trace_sha256=last.trace_sha256,
-                    decision=last.decision,
-                    target=last.id,
-                    when_s=self._clock(),
-                    extra={"study": self.study.name, "queue": person.queue},
-                )
-            )
+            before = sum(event.target == last.id for event in self._events)
+            writing.append(undo_event(last, before=before, when_s=self._clock()))
             return True
+
+    def answered(self, person: Person) -> frozenset[int]:
+        """Places of the person's queue that are answered."""
+        with self._store.writing() as writing:
+            return frozenset(self._answered(writing, person.queue))
 
     def progress(self) -> dict[str, tuple[int, int]]:
         """Queue → answered places and all places."""
@@ -232,46 +200,3 @@ class Desk:
             while len(self._prompts) > _KEPT:
                 self._prompts.popitem(last=False)
             return self._prompts[place]
-
-    def _event(self, person: Person, answer: Submission, prompt: Prompt, place: Place) -> Event:
-        item = self.study.items[place.item]
-        return Event(
-            id=f"{self.study.name}.{person.pseudonym}.{answer.id}",
-            kind=Kind.RANKING,
-            author=person.name,
-            trace_sha256=item.trace_sha256,
-            decision=item.decision,
-            said=said_by(answer.tiers, prompt),
-            when_s=self._clock(),
-            extra={
-                "study": self.study.name,
-                "study_sha256": self.study.sha256,
-                "queue": person.queue,
-                "place": str(answer.number),
-                "again": "yes" if place.again else "no",
-                "episode": item.episode,
-                "slot": item.slot,
-                "question": question_id(prompt.question),
-                "shown": " ".join(key for _, key in prompt.labels),
-                "response_ms": str(answer.response_ms),
-                "hidden_ms": str(answer.hidden_ms),
-            },
-        )
-
-
-def said_by(tiers: Sequence[Sequence[str]], prompt: Prompt) -> Said:
-    """Labels from best to worst as an answer over keys; raises `UsageError`.
-
-    Labels that are left out are tied behind; no label at all means none of them.
-    """
-    if not tiers:
-        return Abstention(NONE)
-    keys = dict(prompt.labels)
-    named = [label for tier in tiers for label in tier]
-    if not all(tiers) or len(set(named)) < len(named) or not set(named) <= keys.keys():
-        message = f"expected tiers of distinct labels among {', '.join(keys)}; came {named}"
-        raise UsageError(message)
-    found = [tuple(keys[label] for label in tier) for tier in tiers]
-    rest = tuple(key for label, key in keys.items() if label not in named)
-    ranked = (*found, rest) if rest else tuple(found)
-    return Ordering(ranked) if len(ranked[0]) == 1 else Tie(ranked)

@@ -74,3 +74,10 @@ def question_id(question: Question) -> str:
         ),
     ]
     return hashlib.sha256(json.dumps(content, ensure_ascii=False).encode()).hexdigest()
+
+
+def shown_sha256(prompt: Prompt) -> str:
+    """Digest of exactly what a person sees: words, picture bytes and labels in their order."""
+    seen = [part if isinstance(part, str) else {"jpeg": part.sha256} for part in prompt.parts]
+    content = [seen, [label for label, _ in prompt.labels]]
+    return hashlib.sha256(json.dumps(content, ensure_ascii=False).encode()).hexdigest()

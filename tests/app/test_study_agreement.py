@@ -16,9 +16,10 @@ from statsmodels.stats.inter_rater import aggregate_raters, fleiss_kappa
 from app.cli import main
 from app.reviews.agreement import ALL, agreements, alpha_interval, order_effects
 from app.reviews.answers import Answer, Answers, Rater, Showing
-from app.reviews.desk import Desk, Submission
+from app.reviews.desk import Desk
 from app.reviews.reading import read_answers
 from app.reviews.store import export_lines, store_of
+from app.reviews.submissions import Submission
 from c2nav_engine.experiments.reeval_table import COLUMNS, write_table
 from c2nav_engine.experiments.statistics.agreement import krippendorff_alpha
 from c2nav_engine.experiments.statistics.orders import Shown

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from app.cli import main
-from app.reviews.desk import LEASE_S, Desk, Submission, Taken, said_by
+from app.reviews.desk import LEASE_S, Desk, Taken
 from app.reviews.events import Event, Kind
 from app.reviews.importing import import_answers
 from app.reviews.questions import prompt_at
@@ -18,6 +18,7 @@ from app.reviews.queues import Place
 from app.reviews.state import standing
 from app.reviews.store import Store, shared_events, store_of
 from app.reviews.study import Person, Study, add_person, make_study, read_study
+from app.reviews.submissions import Submission, said_by
 from c2nav_engine.contract.outcome import Abstention, Ordering, Tie
 from c2nav_engine.errors import UsageError
 from c2nav_engine.runner.recorded import open_trace
@@ -281,3 +282,13 @@ def test_the_command_makes_adds_tells_and_exports(run: Path, tmp_path: Path, cap
     assert command(*made) == 2
     assert command("study", "status", run, "--name", "other") == 2
     assert command("study", "status", tmp_path / "nowhere", "--name", "n") == 2
+
+
+def test_who_shares_a_queue_or_is_unknown_gets_no_page(run: Path, tmp_path: Path, capsys):
+    study_with(run, "ann", "bob", queue="both")
+    packing = ("study", "pack", run, "--name", "first", "--out", tmp_path / "out")
+    assert command(*packing) == 2
+    assert "share one" in capsys.readouterr().err
+    assert command(*packing, "--person", "eve") == 2
+    assert "it has ann, bob" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
