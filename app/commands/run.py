@@ -24,7 +24,6 @@ from app.commands.options import (
     words,
 )
 from app.commands.output import print_json
-from app.commands.run_estimate import tell_estimate
 from app.commands.run_words import error_lines, progress_bar, tell_rows
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.batch import BatchResult, run_batch
@@ -94,6 +93,9 @@ def run(
     )
     chosen = executor_for(executor, setting, workers=workers, options=key_values(executor_opt))
     if dry_run:
+        # The estimate's statistics take a second to import, which a run need not wait for.
+        from app.commands.run_estimate import tell_estimate
+
         return tell_estimate(spec, out, workers=workers, json=json)
     with _polite(), progress_bar(quiet=json) as tell:
         result = run_batch(spec, out, chosen, resume=resume, progress=tell)

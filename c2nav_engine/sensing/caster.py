@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float32, UInt32
 
+from c2nav_engine.world.open3d_lean import open3d
 from c2nav_engine.world.scene import Scene
 
 NO_TRIANGLE = 0xFFFFFFFF
@@ -40,11 +41,9 @@ class Caster:
     """
 
     def __init__(self, scene: Scene, *, threads: int = 0) -> None:
-        # Importing Open3D takes seconds, so it waits for the first scene.
-        import open3d
-
-        self._tensor: Any = open3d.core.Tensor.from_numpy
-        self._scene: Any = open3d.t.geometry.RaycastingScene(nthreads=threads)
+        o3d = open3d()
+        self._tensor: Any = o3d.core.Tensor.from_numpy
+        self._scene: Any = o3d.t.geometry.RaycastingScene(nthreads=threads)
         self._scene.add_triangles(
             self._tensor(np.ascontiguousarray(scene.vertices_m)),
             self._tensor(np.ascontiguousarray(scene.triangles).view(np.uint32)),

@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float, Int, UInt8
 
+from c2nav_engine.world.open3d_lean import open3d
+
 _RAYS = 32
 _REACH_M = 1.3
 """Surfaces nearer than this hide light, the more the nearer."""
@@ -114,11 +116,9 @@ def _cast(
     rays: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Distance and triangle of each ray's first hit; inf and −1 for none."""
-    # Importing Open3D takes seconds, so it waits for the first house.
-    import open3d
-
-    tensor: Any = open3d.core.Tensor.from_numpy
-    scene: Any = open3d.t.geometry.RaycastingScene()
+    o3d = open3d()
+    tensor: Any = o3d.core.Tensor.from_numpy
+    scene: Any = o3d.t.geometry.RaycastingScene()
     scene.add_triangles(tensor(vertices_m.astype(np.float32)), tensor(triangles.astype(np.uint32)))
     answer = scene.cast_rays(tensor(rays))
     hit = answer["primitive_ids"].numpy().astype(np.int64)
