@@ -123,6 +123,18 @@ def _simulated(options: Options) -> SeatFor:
     return lambda stage: simulated_seat(stage, options)
 
 
+def _replay(options: Options) -> SeatFor:
+    from c2nav_engine.experiments.replayed import Recordings
+
+    return Recordings(options).seat
+
+
+def _replay_adapter(options: Options) -> Adapter:
+    from c2nav_engine.experiments.replayed import Recordings, replay_of
+
+    return replay_of(Recordings(options).all)
+
+
 def _openai_chat(options: Options) -> Adapter:
     from c2nav_engine.rankers.openai_chat import OpenAIChat
 
@@ -171,6 +183,9 @@ RANKERS: Mapping[str, RankerEntry] = {
     **{name: _preset(name, preset) for name, preset in PRESETS.items()},
     "local": _entry(_local, "Qwen3-VL in process (extra `local`)"),
     "human": RankerEntry(_human, "a person in the inspector", interactive=True),
+    "replay": RankerEntry(
+        _replay, "recorded answers, by the exact request", adapter=_replay_adapter
+    ),
     "scripted": _entry(_scripted, "a fixed answer, for tests"),
     "random": RankerEntry(_random, "seeded uniform orders", adapter=_random_adapter),
     "simulated": RankerEntry(

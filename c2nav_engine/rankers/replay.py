@@ -9,7 +9,7 @@ from c2nav_engine.contract.outcome import TransportFailure
 from c2nav_engine.contract.prompt import Prompt, Ranked, Reply
 
 NOT_RECORDED = "not in the record"
-"""Reason of the failure for a request that the record does not hold."""
+"""Begins the reason of the failure for a request that the record does not hold."""
 
 
 class Replay:
@@ -46,7 +46,8 @@ class Replay:
             replies = self._recorded.get(prompt.request_sha256, ())
             if not replies:
                 self.misses.append(prompt)
-                return Reply(outcome=TransportFailure(NOT_RECORDED), retry_after_s=None)
+                reason = f"{NOT_RECORDED}: request {prompt.request_sha256[:12]}"
+                return Reply(outcome=TransportFailure(reason), retry_after_s=None)
             turn = self._played.get(prompt.request_sha256, 0)
             self._played[prompt.request_sha256] = turn + 1
             return replies[min(turn, len(replies) - 1)]

@@ -170,7 +170,7 @@ class AskingRanker:
         reason = getattr(failed.outcome, "reason", "")
         return RankerUnavailable(
             f"expected {self.name} to answer a {slot} question, came: {reason}. "
-            "Check the server, then resume the run"
+            "Mend that, then resume the run"
         )
 
     def _send(self, prompts: Sequence[Prompt]) -> list[Reply]:
