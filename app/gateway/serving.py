@@ -32,6 +32,10 @@ _NO_LIMIT = 1 << 40
 """Bytes of one websocket frame: a scene arrives as one."""
 
 
+_WAITING = 64
+"""Connections that may wait while the server starts."""
+
+
 @dataclass(frozen=True, slots=True)
 class Address:
     """Where a running inspector is reached."""
@@ -159,6 +163,8 @@ def _listen(host: str, port: int) -> socket.socket:
         listener.close()
         message = f"expected a free port, came {host}:{port} ({error}); choose another with --port"
         raise UsageError(message) from error
+    # Whoever comes between the printed address and the first answer waits, and is not refused.
+    listener.listen(_WAITING)
     return listener
 
 

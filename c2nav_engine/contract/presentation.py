@@ -6,6 +6,7 @@ The seeded shuffle is the recorded order (index 0). `Orders.BOTH` adds its rever
 
 from __future__ import annotations
 
+import functools
 import string
 
 import numpy as np
@@ -24,8 +25,13 @@ def seeded_order(question: Question) -> tuple[Key, ...]:
     if not 2 <= len(keys) <= len(string.ascii_uppercase) or len(set(keys)) != len(keys):
         message = f"expected 2 to 26 distinct alternatives to compare, came {keys}"
         raise InternalError(message)
-    generator = np.random.default_rng(question.shuffle_seed)
-    shuffled: list[int] = generator.permutation(len(keys)).tolist()
+    return _shuffled(keys, question.shuffle_seed)
+
+
+@functools.lru_cache(maxsize=4096)
+def _shuffled(keys: tuple[Key, ...], seed: int) -> tuple[Key, ...]:
+    """Kept, because every view of a recording asks for the letters of all its questions."""
+    shuffled: list[int] = np.random.default_rng(seed).permutation(len(keys)).tolist()
     return tuple(keys[index] for index in shuffled)
 
 

@@ -51,7 +51,7 @@ BLOCKS = [
     decision._below,
     sketch._block,
     ladder._block,
-    branches._block,
+    lambda snapshot: branches._block(snapshot, branches.Costs()),
     review._block,
     run._block,
     export._block,
