@@ -81,6 +81,7 @@ BENCHES: Mapping[str, Bench] = {
     ),
     "large": Bench(("view_cost_10m_over_100k",), _rendering("view_cost_10m_over_100k")),
     "workers": Bench(("workers2_over_1",), _module("batch")),
+    "cases": Bench(("cases_filter_2000_ms", "cases_filter_100000_ms"), _module("cases")),
     "page": Bench(
         ("step_click_to_picture_p50_ms", "step_click_to_picture_p95_ms"), _module("page")
     ),

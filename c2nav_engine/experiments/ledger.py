@@ -110,3 +110,12 @@ def states_of(path: Path) -> dict[str, int]:
     """States of a run's tasks without touching its ledger, also while it runs."""
     with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as db:
         return dict(db.execute("select state, count(*) from tasks group by state").fetchall())
+
+
+def failures_of(path: Path) -> dict[str, tuple[Row, str]]:
+    """Name → (row, error) of a run's failed tasks, read as `states_of` does."""
+    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as db:
+        found = db.execute(
+            "select name, row, error from tasks where state = 'failed' and row is not null"
+        )
+        return {name: (json.loads(row), error) for name, row, error in found}
