@@ -11,22 +11,32 @@ from rich.console import Console
 from app.commands.options import JsonOpt, RankerOptions, ScenesOpt, key_values
 from app.commands.output import print_json
 from app.commands.sources import trace_files
+from app.session.wording import plural
 from c2nav_engine.errors import UsageError
-from c2nav_engine.experiments.rankers import RANKERS, seats_for
-from c2nav_engine.experiments.turning.flips import Budget, flips_of
+from c2nav_engine.experiments.turning.flips import (
+    Budget,
+    Trial,
+    expected_queries,
+    flips_of,
+    trials_of,
+)
 from c2nav_engine.experiments.turning.moments import Recording, recording_of
 from c2nav_engine.experiments.turning.recoverable import last_recoverable
-from c2nav_engine.experiments.turning.regrets import Regret, regrets_of
+from c2nav_engine.experiments.turning.regrets import regrets_of
+from c2nav_engine.experiments.turning.same_ranker import Continuing, continuing
+from c2nav_engine.experiments.turning.summary import verdict_of
 from c2nav_engine.experiments.turning.table import (
+    FLIP,
+    RECOVERABLE,
     Row,
     flip_row,
+    flips_in,
+    goes_on,
     read_table,
     recoverable_row,
-    regret_row,
-    verdict_of,
+    regret_rows,
     write_table,
 )
-from c2nav_engine.runner.opening import SeatFor
 from c2nav_engine.runner.recorded import read_trace
 
 
@@ -44,75 +54,77 @@ def turning(
     json: JsonOpt = False,
 ) -> int:
     """Fork the worst decisions of failed episodes into their other answers; resumes its table."""
+    _check(suspects, repeats)
     rows = read_table(out)
     console = Console(stderr=True, highlight=False)
+    options = key_values(ranker_opt)
     verdicts: dict[str, str] = {}
     for path in trace_files(what):
         trace = read_trace(path)
         if trace.footer.metrics.get("success") == 1:
             continue
+        on = continuing(trace.header, ranker, options)
         recording = recording_of(trace, scenes=scenes)
-        seat_for = _seats(recording, ranker, key_values(ranker_opt))
-        regrets = _first_parts(recording, rows, out)
-        worst = [regret.decision for regret in sorted(regrets, key=_weight)[:suspects]]
-        cost = _expected_queries(recording, worst, repeats)
-        console.print(f"{path.name}: about {cost} queries for {len(worst)} decisions")
-        tried = {(row["trace_sha256"], row["decision"], row["answer"]) for row in rows}
+        rows, trials = _measured(recording, rows, suspects)
+        write_table(rows, out)
+        left = _left(rows, recording, trials, (on, repeats, out))
+        cost = expected_queries(recording, left, repeats=repeats)
+        decisions = len({trial.decision for trial in left})
+        console.print(
+            f"{path.name}: {plural(len(left), 'answer')} to try at {plural(decisions, 'decision')}"
+            f", about {plural(cost, 'query')}",
+            markup=False,
+        )
         budget = Budget(repeats, max_queries)
-        for flip in flips_of(
-            recording,
-            worst,
-            seat_for,
-            budget=budget,
-            known=lambda decision, answer, sha=trace.sha256, tried=tried: (
-                (sha, decision, answer) in tried
-            ),
-        ):
-            rows.append(flip_row(recording, flip))
+        for flip in flips_of(recording, left, on.seat_for, budget=budget):
+            rows.append(flip_row(recording, flip, on))
             write_table(rows, out)
-        mine = [row for row in rows if row["trace_sha256"] == trace.sha256]
-        verdicts[path.name] = verdict_of(mine)
+        verdicts[path.name] = verdict_of(_of(rows, recording))
     _tell(verdicts, out, json=json)
     return 0
 
 
-def _seats(recording: Recording, ranker: str, options: dict[str, str]) -> SeatFor:
-    """The ranker that goes on: the one named, else the one that the recording names."""
-    name = ranker or next((n for n in RANKERS if recording.header.ranker.startswith(n)), "")
-    if not name or RANKERS[name].interactive:
+def _check(suspects: int, repeats: int) -> None:
+    if suspects < 0 or repeats < 1:
         message = (
-            f"expected a ranker to go on with, came a recording by {recording.header.ranker!r}; "
-            "name one with --ranker"
+            f"expected 0 or more suspects and 1 or more repeats, came {suspects} and {repeats}"
         )
         raise UsageError(message)
-    return seats_for(name, options or recording.header.ranker_options)
 
 
-def _first_parts(recording: Recording, rows: list[Row], out: Path) -> list[Regret]:
-    """(a) and (b), written once a trace."""
+def _measured(
+    recording: Recording, rows: list[Row], suspects: int
+) -> tuple[list[Row], list[Trial]]:
+    """Rows with (a) as of this call and (b) measured once, and what (c) is to try."""
     regrets = regrets_of(recording)
-    done = any(
-        row["trace_sha256"] == recording.trace_sha256 and row["part"] == "recoverable"
-        for row in rows
-    )
-    if not done:
-        rows += [regret_row(recording, regret) for regret in regrets]
-        rows.append(recoverable_row(recording, last_recoverable(recording)))
-        write_table(rows, out)
-    return regrets
+    trials = trials_of(recording, regrets, suspects=suspects)
+    mine = _of(rows, recording)
+    known = [row for row in mine if row["part"] == RECOVERABLE]
+    found = known or [recoverable_row(recording, last_recoverable(recording))]
+    others = [row for row in rows if row["trace_sha256"] != recording.trace_sha256]
+    tried = [row for row in mine if row["part"] == FLIP]
+    return [*others, *regret_rows(recording, regrets, trials), *found, *tried], trials
 
 
-def _weight(regret: Regret) -> tuple[float, int]:
-    return regret.weight
+def _left(
+    rows: list[Row], recording: Recording, trials: list[Trial], how: tuple[Continuing, int, Path]
+) -> list[Trial]:
+    """Trials that no earlier call made; raises `UsageError` where one made them otherwise."""
+    on, repeats, out = how
+    mine = flips_in(rows, recording.trace_sha256)
+    alike = flips_in(rows, recording.trace_sha256, goes_on=goes_on(on), repeats=repeats)
+    if len(mine) != len(alike):
+        message = (
+            f"expected earlier rows of {goes_on(on)} with {repeats} repeats in {out}, came others "
+            "for the same trace; name another --out"
+        )
+        raise UsageError(message)
+    tried = {(flip.decision, flip.answer) for flip in alike}
+    return [trial for trial in trials if (trial.decision, trial.answer) not in tried]
 
 
-def _expected_queries(recording: Recording, decisions: list[int], repeats: int) -> int:
-    """Queries of the recording after each decision, for its control and two other answers."""
-    total = 0
-    for number in decisions:
-        after = [e for e in recording.questions if (e.decision or 0) > number]
-        total += sum(len(e.ranked.queries) for e in after if e.ranked)
-    return total * repeats * 3
+def _of(rows: list[Row], recording: Recording) -> list[Row]:
+    return [row for row in rows if row["trace_sha256"] == recording.trace_sha256]
 
 
 def _tell(verdicts: dict[str, str], out: Path, *, json: bool) -> None:
@@ -122,4 +134,4 @@ def _tell(verdicts: dict[str, str], out: Path, *, json: bool) -> None:
     console = Console(highlight=False)
     for name, verdict in verdicts.items():
         console.print(f"{name}: {verdict}", markup=False)
-    console.print(f"{len(verdicts)} failed episodes, {out}")
+    console.print(f"{plural(len(verdicts), 'failed episode')}, {out}", markup=False)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from typing import cast
 
 from c2nav_engine.contract.outcome import Abstention, Answered, Key, Ordering
 from c2nav_engine.contract.question import Form, Slot
 from c2nav_engine.experiments.turning.moments import Recording, going_on
+from c2nav_engine.experiments.turning.regrets import Regret
 from c2nav_engine.navigator.requests import Ask
-from c2nav_engine.runner.episode_run import run_to_end
+from c2nav_engine.runner.episode_run import EpisodeRun
 from c2nav_engine.runner.exchange import Exchange, Override
 from c2nav_engine.runner.opening import SeatFor
 
@@ -19,7 +22,32 @@ TERMINAL = frozenset({Slot.GROUND, Slot.JOURNEY, Slot.LOOKBACK})
 
 TURNING = "one answer away"
 UNSTABLE = "unstable"
-NO_CHANGE = "no success"
+NO_SUCCESS = "no success"
+
+WHO = "turning points"
+"""Whom the record of a changed answer names."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """One other answer that is worth trying.
+
+    Attributes:
+        exchange: The decision as it was recorded.
+        slot: Decision slot.
+        answer: A key, or "undecided".
+        outcome: What is committed for it.
+    """
+
+    exchange: Exchange
+    slot: Slot
+    answer: str
+    outcome: Answered
+
+    @property
+    def decision(self) -> int:
+        """Number."""
+        return cast("int", self.exchange.decision)
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +61,7 @@ class Flip:
         changed: Successes with the change.
         control: Successes of the unchanged decision, run on by the same ranker.
         repeats: Runs of each.
-        queries: Queries that all these runs took.
+        queries: Queries that the changed runs took, and the control's with a decision's first.
     """
 
     decision: int
@@ -49,7 +77,24 @@ class Flip:
         """A turning point only where every change and no control succeeded."""
         if self.control > 0 or 0 < self.changed < self.repeats:
             return UNSTABLE
-        return TURNING if self.changed else NO_CHANGE
+        return TURNING if self.changed else NO_SUCCESS
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """How much may be asked.
+
+    Attributes:
+        repeats: Runs of each changed and unchanged decision.
+        max_queries: Queries after which nothing new is tried; None for no limit.
+    """
+
+    repeats: int = 3
+    max_queries: int | None = None
+
+    def spent(self, queries: int) -> bool:
+        """Whether nothing new may be tried."""
+        return self.max_queries is not None and queries >= self.max_queries
 
 
 def other_answers(exchange: Exchange) -> list[tuple[str, Answered]]:
@@ -67,79 +112,113 @@ def other_answers(exchange: Exchange) -> list[tuple[str, Answered]]:
     return found
 
 
-@dataclass(frozen=True, slots=True)
-class Budget:
-    """How much may be asked.
+def trials_of(recording: Recording, regrets: Sequence[Regret], *, suspects: int) -> list[Trial]:
+    """Every other answer of the worst decisions by regret, worst decision first.
 
-    Attributes:
-        repeats: Runs of each changed and unchanged decision.
-        max_queries: Queries after which no new answer is tried; None for no limit.
+    Args:
+        recording: The failed episode.
+        regrets: All of its decisions (`regrets_of`).
+        suspects: How many decisions to change.
     """
+    by_number = {exchange.decision: exchange for exchange in recording.questions}
+    worst = sorted(regrets, key=lambda regret: regret.weight)[:suspects]
+    return [
+        Trial(by_number[regret.decision], regret.slot, answer, outcome)
+        for regret in worst
+        for answer, outcome in other_answers(by_number[regret.decision])
+    ]
 
-    repeats: int = 3
-    max_queries: int | None = None
+
+def expected_queries(recording: Recording, trials: Sequence[Trial], *, repeats: int) -> int:
+    """What trying them is expected to ask: each run as many queries as the recording then took."""
+    return sum(
+        repeats * _queries_after(recording, decision) * (1 + len(list(group)))
+        for decision, group in groupby(trials, key=lambda trial: trial.decision)
+    )
+
+
+def _queries_after(recording: Recording, decision: int) -> int:
+    after = (e for e in recording.questions if (e.decision or 0) > decision)
+    return sum(len(e.ranked.queries) for e in after if e.ranked)
+
+
+class _Stopped(Exception):
+    """Somebody cancelled; a run was left before its end."""
 
 
 def flips_of(
     recording: Recording,
-    decisions: Sequence[int],
+    trials: Sequence[Trial],
     seat_for: SeatFor,
     *,
     budget: Budget,
-    known: Callable[[int, str], bool],
+    stopped: Callable[[], bool] = lambda: False,
 ) -> Iterator[Flip]:
-    """Try every other answer of the given decisions, worst first; a generator can be left early.
+    """Run trials and their controls, one flip a step; nothing is lost by leaving early.
 
     Args:
         recording: The failed episode.
-        decisions: Which decisions to change, in this order.
+        trials: What to change, those of one decision together: they share its control.
         seat_for: The ranker that made the recording, going on.
         budget: Repeats and most queries.
-        known: Whether a (decision, answer) was tried by an earlier, interrupted call.
+        stopped: Looked at between any two requests; once true, no further flip comes.
+
+    Raises:
+        RankerError: The ranker cannot go on.
     """
     spent = 0
-    by_number = {exchange.decision: exchange for exchange in recording.questions}
-    for number in decisions:
-        exchange = by_number[number]
-        todo = [(a, o) for a, o in other_answers(exchange) if not known(number, a)]
-        if not todo or not isinstance(exchange.request, Ask):
-            continue
-        control, asked = _successes(recording, exchange, None, (seat_for, budget.repeats))
-        spent += asked
-        for answer, outcome in todo:
-            if budget.max_queries is not None and spent >= budget.max_queries:
+    runner = _Runner(recording, seat_for, budget.repeats, stopped)
+    for _, group in groupby(trials, key=lambda trial: trial.decision):
+        if budget.spent(spent):
+            return
+        control: tuple[int, int] | None = None
+        for trial in group:
+            if control is not None and budget.spent(spent):
                 return
-            changed, more = _successes(recording, exchange, outcome, (seat_for, budget.repeats))
-            spent += more
+            try:
+                asked = 0
+                if control is None:
+                    control = runner.successes(trial, cast("Answered", trial.exchange.response))
+                    asked = control[1]
+                changed, queries = runner.successes(trial, trial.outcome)
+            except _Stopped:
+                return
+            spent += asked + queries
             yield Flip(
-                decision=number,
-                slot=exchange.request.question.slot,
-                answer=answer,
+                decision=trial.decision,
+                slot=trial.slot,
+                answer=trial.answer,
                 changed=changed,
-                control=control,
+                control=control[0],
                 repeats=budget.repeats,
-                queries=asked + more,
+                queries=asked + queries,
             )
-            asked = 0
 
 
-def _successes(
-    recording: Recording,
-    exchange: Exchange,
-    outcome: Answered | None,
-    how: tuple[SeatFor, int],
-) -> tuple[int, int]:
-    """(successes, queries) of going on from one decision; the control keeps its own answer."""
-    seat_for, repeats = how
-    response = exchange.response if outcome is None else outcome
-    if exchange.decision is None or response is None:
-        return 0, 0
-    successes = queries = 0
-    for _ in range(repeats):
-        override = Override(response, "turning points")  # pyright: ignore[reportArgumentType]
-        run = going_on(recording, exchange.decision, seat_for, override=override)
-        footer = run_to_end(run)
-        successes += footer.metrics.get("success") == 1
-        before = exchange.index
-        queries += sum(len(e.ranked.queries) for e in run.exchanges[before:] if e.ranked)
-    return successes, queries
+@dataclass(frozen=True, slots=True)
+class _Runner:
+    """Goes on from decisions of one recording."""
+
+    recording: Recording
+    seat_for: SeatFor
+    repeats: int
+    stopped: Callable[[], bool]
+
+    def successes(self, trial: Trial, outcome: Answered) -> tuple[int, int]:
+        """(successes, queries) with an outcome committed at a decision."""
+        successes = queries = 0
+        for _ in range(self.repeats):
+            override = Override(outcome, WHO)
+            run = going_on(self.recording, trial.decision, self.seat_for, override=override)
+            successes += self._succeeds(run)
+            after = run.exchanges[trial.exchange.index :]
+            queries += sum(len(e.ranked.queries) for e in after if e.ranked)
+        return successes, queries
+
+    def _succeeds(self, run: EpisodeRun) -> bool:
+        while run.footer is None:
+            if self.stopped():
+                run.close()
+                raise _Stopped
+            run.advance()
+        return run.footer.metrics.get("success") == 1

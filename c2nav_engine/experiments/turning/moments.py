@@ -68,15 +68,38 @@ class Recording:
 
 
 def recording_of(trace: Trace, *, scenes: Path | None) -> Recording:
-    """Run a trace's body through its scene again, keeping the shell at every question.
-
-    Raises:
-        SceneError: The scene is not to be had.
-        InputError: The episode has no reachable goal, so nothing can be said about it.
-    """
+    """A trace as a recording, its scene loaded; raises as `recording_in`, and `SceneError`."""
     header = trace.header
     worlds = Worlds(source_of_record(header, scenes), WorldsConfig(header.profile))
-    world = worlds.of(header.episode.scene_id)
+    return recording_in(
+        worlds.of(header.episode.scene_id),
+        header,
+        trace.exchanges,
+        footer=trace.footer,
+        trace_sha256=trace.sha256,
+    )
+
+
+def recording_in(
+    world: World,
+    header: Header,
+    exchanges: Sequence[Exchange],
+    *,
+    footer: Footer,
+    trace_sha256: str = "",
+) -> Recording:
+    """Run an episode's body through its scene again, keeping the shell at every question.
+
+    Args:
+        world: The episode's scene; used by this recording alone while it is gone on from.
+        header: Of the episode.
+        exchanges: All of them.
+        footer: How it ended.
+        trace_sha256: Digest of its trace; "" where none was written.
+
+    Raises:
+        InputError: The episode has no goal on the floor, so nothing can be said about it.
+    """
     field = goal_field_of(world, header.episode)
     if field is None:
         message = (
@@ -86,12 +109,12 @@ def recording_of(trace: Trace, *, scenes: Path | None) -> Recording:
         raise InputError(message)
     return Recording(
         header=header,
-        exchanges=trace.exchanges,
-        footer=trace.footer,
-        trace_sha256=trace.sha256,
+        exchanges=tuple(exchanges),
+        footer=footer,
+        trace_sha256=trace_sha256,
         world=world,
         field=field,
-        shells=_shells(trace.exchanges, _fresh_shell(header, world, field)),
+        shells=_shells(exchanges, _fresh_shell(header, world, field)),
     )
 
 

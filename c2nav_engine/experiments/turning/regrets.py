@@ -14,6 +14,8 @@ from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.runner.exchange import Exchange
 from c2nav_engine.runner.opening import task_of
 
+WRONG = "wrong"
+"""What is said of an answer that differs from the right one."""
 SPATIAL = frozenset({Slot.SEEING, Slot.DIRECT})
 """Slots whose alternatives end at different places, so that regret is metres."""
 
@@ -43,7 +45,7 @@ class Regret:
     def weight(self) -> tuple[float, int]:
         """Sorting key, worst first: metres, then wrong answers that do not move, latest first."""
         metres = self.regret_m if self.regret_m is not None else 0.0
-        wrong = 1.0 if self.words == "wrong" else 0.0
+        wrong = 1.0 if self.words == WRONG else 0.0
         return (-max(metres, wrong), -self.decision)
 
 
@@ -81,7 +83,7 @@ def _regret(
     committed = exchange.response.winner if isinstance(exchange.response, Ordering) else ""
     slot = ask.question.slot
     metres: float | None = None
-    words = "wrong" if target and committed and committed != target else ""
+    words = WRONG if target and committed and committed != target else ""
     if slot in SPATIAL:
         offered = {c.key: after_m[c.key] for c in ask.facts.candidates if c.feasible}
         vetoed = {c.key: after_m[c.key] for c in ask.facts.candidates if not c.feasible}

@@ -1,0 +1,205 @@
+"""Episodes with planted wrong answers: a noiseless observer that errs where it was told to.
+
+The step budget is exactly what the flawless episode takes, so that a detour cannot be made up for.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from pathlib import Path
+
+from c2nav_engine.contract.outcome import Key, Ordering
+from c2nav_engine.contract.prompt import Ranked
+from c2nav_engine.contract.question import Question, Slot
+from c2nav_engine.episodes.profile import VLNCE
+from c2nav_engine.experiments.rankers import seats_for
+from c2nav_engine.experiments.truth import Course, course_of, goal_after_m
+from c2nav_engine.experiments.turning.moments import Recording, recording_in
+from c2nav_engine.experiments.turning.recoverable import NOISELESS
+from c2nav_engine.navigator.requests import Ask
+from c2nav_engine.rankers.protocol import Ranker
+from c2nav_engine.runner.episode_run import run_to_end
+from c2nav_engine.runner.exchange import Exchange
+from c2nav_engine.runner.opening import OpenSpec, Seat, SeatFor, Stage, Workbench, task_of
+from c2nav_engine.runner.recording import TraceWriter
+from c2nav_engine.runner.source import open_source
+from c2nav_engine.runner.worlds import Worlds, WorldsConfig
+
+NOISELESS_SEATS = seats_for("simulated", NOISELESS)
+
+Wrong = Mapping[int, Key]
+"""Number of an election of the episode, from 0 → what is elected there, right or not."""
+
+
+def erring_seats(*habits: Wrong) -> SeatFor:
+    """Seats that err by the first habit when first made, by the next when made again, in turn."""
+    made = Counter[str]()
+
+    def seat_for(stage: Stage) -> Seat:
+        wrong = habits[made[stage.episode.episode_id] % len(habits)]
+        made[stage.episode.episode_id] += 1
+        seat = NOISELESS_SEATS(stage)
+        assert seat.ranker is not None
+        erring = _Erring(seat, seat.ranker, wrong)
+        return replace(seat, ranker=erring, before_ask=erring.before_ask)
+
+    return seat_for
+
+
+class _Erring:
+    def __init__(self, seat: Seat, ranker: Ranker, wrong: Wrong) -> None:
+        self._seat, self._ranker, self._wrong = seat, ranker, wrong
+        self._election = -1
+
+    @property
+    def name(self) -> str:
+        return self._ranker.name
+
+    def before_ask(self, ask: Ask, exchanges: Sequence[Exchange]) -> None:
+        assert self._seat.before_ask is not None
+        self._seat.before_ask(ask, exchanges)
+        self._election = len(_elections(exchanges))
+
+    def rank(self, question: Question) -> Ranked:
+        ranked = self._ranker.rank(question)
+        wrong = self._wrong.get(self._election, "")
+        if question.slot is not Slot.SEEING or wrong not in question.keys:
+            return ranked
+        return replace(ranked, outcome=Ordering.winner_only(wrong, question.keys))
+
+
+def _elections(exchanges: Sequence[Exchange]) -> list[Exchange]:
+    asked = [e for e in exchanges if isinstance(e.request, Ask)]
+    return [e for e in asked if _ask(e).question.slot is Slot.SEEING]
+
+
+def _ask(exchange: Exchange) -> Ask:
+    assert isinstance(exchange.request, Ask)
+    return exchange.request
+
+
+# ---------------------------------------------------------------- episodes
+
+
+@functools.cache
+def _worlds() -> Worlds:
+    return Worlds(open_source("builtin"), WorldsConfig(VLNCE))
+
+
+def run_through(
+    episode_id: str, seat_for: SeatFor, *, max_steps: int = 500, trace: Path | None = None
+) -> Recording:
+    """An episode run to its end, ready to be gone on from."""
+    worlds = _worlds()
+    bench = Workbench(
+        source=open_source("builtin"),
+        worlds=worlds,
+        profile=replace(VLNCE, max_steps=max_steps),
+        seat_for=seat_for,
+        recorder_for=TraceWriter,
+    )
+    run = bench.open(OpenSpec(episode_id, trace=trace))
+    footer = run_to_end(run)
+    world = worlds.of(run.header.episode.scene_id)
+    return recording_in(
+        world, run.header, run.exchanges, footer=footer, trace_sha256=run.trace_sha256
+    )
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A wrong answer that can be planted: the election's number, what is elected, what it costs."""
+
+    election: int
+    key: Key
+    cost_m: float
+
+
+@dataclass(frozen=True)
+class Flawless:
+    """An episode without a mistake, with the mistakes that could be planted, costliest first."""
+
+    episode_id: str
+    steps: int
+    mistakes: tuple[Mistake, ...]
+
+    def with_mistakes(
+        self, *planted: Mistake, seat_for: SeatFor | None = None, trace: Path | None = None
+    ) -> Recording:
+        """The episode with mistakes in it, and not a step to spare."""
+        seats = seat_for or erring_seats({mistake.election: mistake.key for mistake in planted})
+        return run_through(self.episode_id, seats, max_steps=self.steps, trace=trace)
+
+
+@functools.cache
+def flawless(episode_id: str) -> Flawless:
+    """Run an episode without a mistake; raises AssertionError where even that fails."""
+    recording = run_through(episode_id, NOISELESS_SEATS)
+    assert recording.succeeded, f"the noiseless observer fails in episode {episode_id}"
+    course = _course(recording)
+    mistakes = [
+        _costliest(recording, course, number, exchange)
+        for number, exchange in enumerate(_elections(recording.exchanges))
+    ]
+    mistakes.sort(key=lambda mistake: -mistake.cost_m)
+    steps = int(recording.footer.metrics["steps"] or 0)
+    return Flawless(episode_id, steps, tuple(mistakes))
+
+
+def decision_of(recording: Recording, mistake: Mistake) -> int:
+    """The decision that an election is."""
+    decision = _elections(recording.exchanges)[mistake.election].decision
+    assert decision is not None
+    return decision
+
+
+def spoilt_episodes() -> Iterator[tuple[Flawless, Recording, int]]:
+    """Built-in episodes in their order that their costliest single mistake makes fail.
+
+    Some mistakes cost no more than a way that is as short: such an episode is no failure, and
+    there is nothing to explain.
+    """
+    for number in range(1, 101):
+        whole = flawless(str(number))
+        recording = whole.with_mistakes(whole.mistakes[0])
+        if not recording.succeeded:
+            yield whole, recording, decision_of(recording, whole.mistakes[0])
+
+
+def two_needs(whole: Flawless) -> tuple[tuple[Mistake, Mistake], Recording]:
+    """The costliest two mistakes that each spoil the episode alone, with both made in it.
+
+    Raises AssertionError where no two mistakes are such.
+    """
+    for first, second in combinations(whole.mistakes, 2):
+        both = whole.with_mistakes(first, second)
+        made = len(_elections(both.exchanges)) > max(first.election, second.election)
+        alone = (whole.with_mistakes(mistake) for mistake in (first, second))
+        if made and not both.succeeded and not any(one.succeeded for one in alone):
+            return (first, second), both
+    message = f"no two mistakes of episode {whole.episode_id} spoil it, each alone and both made"
+    raise AssertionError(message)
+
+
+def _course(recording: Recording) -> Course:
+    header = recording.header
+    return course_of(
+        header.episode,
+        start=header.episode.start,
+        surface=recording.world.surface,
+        field=recording.field,
+        profile=header.profile,
+        controller=task_of(header).config.controller,
+    )
+
+
+def _costliest(recording: Recording, course: Course, number: int, exchange: Exchange) -> Mistake:
+    assert exchange.decision is not None
+    offered = [c for c in _ask(exchange).facts.candidates if c.feasible]
+    after_m = goal_after_m(course, recording.shells[exchange.decision].pose, offered)
+    worst = max(after_m, key=lambda key: after_m[key])
+    return Mistake(number, worst, after_m[worst] - min(after_m.values()))
