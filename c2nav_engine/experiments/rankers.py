@@ -135,31 +135,23 @@ def _replay_adapter(options: Options) -> Adapter:
     return replay_of(Recordings(options).all)
 
 
-def _openai_chat(options: Options) -> Adapter:
+def _openai_chat(options: Options, name: str = "") -> Adapter:
     from c2nav_engine.rankers.openai_chat import OpenAIChat
 
-    return OpenAIChat.from_options(options)
+    return OpenAIChat.from_options(options, name=name)
+
+
+def _openai_responses(options: Options, name: str = "") -> Adapter:
+    from c2nav_engine.rankers.openai_responses import OpenAIResponses
+
+    return OpenAIResponses.from_options(options, name=name)
 
 
 def _preset(name: str, preset: Preset) -> RankerEntry:
     """A known model under its short name; its options are those of its interface."""
-
-    def build(options: Options) -> Adapter:
-        if preset.ranker == "openai-responses":
-            from c2nav_engine.rankers.openai_responses import OpenAIResponses
-
-            return OpenAIResponses.from_options(options, name=name)
-        from c2nav_engine.rankers.openai_chat import OpenAIChat
-
-        return OpenAIChat.from_options(options, name=name)
-
-    return _entry(build, f"{preset.model} through {preset.ranker}", remote=True)
-
-
-def _openai_responses(options: Options) -> Adapter:
-    from c2nav_engine.rankers.openai_responses import OpenAIResponses
-
-    return OpenAIResponses.from_options(options)
+    interface = {"openai-chat": _openai_chat, "openai-responses": _openai_responses}[preset.ranker]
+    words = f"{preset.model} through {preset.ranker}"
+    return _entry(lambda options: interface(options, name), words, remote=True)
 
 
 def _local(options: Options) -> Adapter:
