@@ -83,7 +83,26 @@ BENCHES: Mapping[str, Bench] = {
     "workers": Bench(("workers2_over_1",), _module("batch")),
     "cases": Bench(("cases_filter_2000_ms", "cases_filter_100000_ms"), _module("cases")),
     "page": Bench(
-        ("step_click_to_picture_p50_ms", "step_click_to_picture_p95_ms"), _module("page")
+        (
+            "step_click_to_picture_p50_ms",
+            "step_click_to_picture_p95_ms",
+            "step_server_processor_ms",
+            "scrub_settled_ms",
+            "scrub_ends_right",
+            "scrub_decisions",
+            "scrub_server_processor_ms",
+            "place_asked_ms",
+            "place_server_processor_ms",
+            "trace_usable_s",
+            "trace_server_processor_s",
+            "large_usable_s",
+            "large_shown_s",
+            "large_server_processor_s",
+            "large_server_peak_mb",
+            "memory_growth_mb",
+            "memory_steps",
+        ),
+        _module("page"),
     ),
 }
 """Benchmarks by the name that the command line takes."""
