@@ -13,7 +13,9 @@ from rich.table import Table
 from app.commands.options import JsonOpt
 from app.commands.output import print_json
 from app.reviews.agreement import Agreement, OrderEffects, agreements, order_effects
+from app.reviews.agreement_grids import agreement_grid, order_grid
 from app.reviews.reading import read_answers
+from c2nav_engine.experiments.report.grids import Grid
 from c2nav_engine.experiments.statistics.intervals import Interval
 
 
@@ -42,9 +44,10 @@ def agree(
         )
         return 0
     console = Console(highlight=False)
-    console.print(_agreement_table(pairs))
-    console.print(_order_table(orders))
-    console.print("intervals: 95 %, episodes drawn again; α slot by slot only", markup=False)
+    for grid in (agreement_grid(pairs), order_grid(orders)):
+        console.print(_table(grid))
+        for note in grid.notes:
+            console.print(note, markup=False, style="dim")
     return 0
 
 
@@ -87,31 +90,8 @@ def _interval_json(interval: Interval | None) -> dict[str, object] | None:
     }
 
 
-def _agreement_table(rows: list[Agreement]) -> Table:
-    table = Table("kind", "pair", "slot", "n", "top-1 %", "chance %", "mean τ", "α")
-    for row in rows:
-        pair = f"{row.a} · {row.b}" if row.a else "all"
-        chance = "" if row.chance is None else f"{100 * row.chance:.0f}"
-        cells = (_words(row.top1, 100), chance, _words(row.tau), _words(row.alpha))
-        table.add_row(row.kind, pair, row.slot, str(row.questions), *cells)
+def _table(grid: Grid) -> Table:
+    table = Table(*grid.heads)
+    for row in grid.rows:
+        table.add_row(*row.cells)
     return table
-
-
-def _order_table(rows: list[OrderEffects]) -> Table:
-    table = Table("rater", "slot", "one winner in every order %", "again alike %", "first", "last")
-    for row in rows:
-        rates = (_words(row.consistency, 100), _words(row.stability, 100))
-        table.add_row(
-            row.rater.name, row.slot, *rates, _words(row.first, 100), _words(row.last, 100)
-        )
-    return table
-
-
-def _words(interval: Interval | None, scale: int = 1) -> str:
-    if interval is None or interval.n == 0:
-        return "–"
-    digits = 0 if scale == 100 else 2
-    middle, low, high = (
-        f"{scale * value:.{digits}f}" for value in (interval.estimate, interval.low, interval.high)
-    )
-    return f"{middle} ({low} … {high})"

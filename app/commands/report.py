@@ -22,13 +22,15 @@ def report(
     json: JsonOpt = False,
 ) -> int:
     """Write tables beside the paper's reported rows: HTML, Markdown, CSV, LaTeX, plots."""
+    from app.reviews.agreement_grids import human_study
     from c2nav_engine.errors import UsageError
     from c2nav_engine.experiments.report.writing import write_report
 
     if not runs:
         message = "expected one or more run folders, came none; name what `c2nav run` wrote"
         raise UsageError(message)
-    written = write_report(runs, out)
+    study = human_study(runs)
+    written = write_report(runs, out, annexes=(study,) if study else ())
     page = out / "report.html"
     if json:
         sections = [

@@ -15,6 +15,7 @@ from statsmodels.stats.inter_rater import aggregate_raters, fleiss_kappa
 
 from app.cli import main
 from app.reviews.agreement import ALL, agreements, alpha_interval, order_effects
+from app.reviews.agreement_grids import human_study
 from app.reviews.answers import Answer, Answers, Rater, Showing
 from app.reviews.desk import Desk
 from app.reviews.reading import read_answers
@@ -174,10 +175,20 @@ def test_the_command_equals_a_hand_count_of_what_was_exported(tmp_path: Path, ca
     assert row["top1"]["estimate"] == pytest.approx(np.mean(equal), abs=1e-9)
     assert row["chance"] == pytest.approx(np.mean([1 / len(a) for a, _ in pairs]), abs=1e-9)
     assert {r["b"] for r in told["agreement"] if r["kind"] == "human-model"} == {"", RANKER}
+    study_tables = human_study([run])
+    assert study_tables is not None
+    pairs_table, _ = study_tables.grids
+    cells = next(r.cells for r in pairs_table.rows if r.cells[::2][:2] == ("human-human", "all"))
+    assert cells[3] == str(row["questions"])
+    assert cells[4].startswith(f"{100 * np.mean(equal):.0f} (")
     out = tmp_path / "people.jsonl"
     out.write_text("\n".join(json.dumps(line) for line in lines), encoding="utf-8")
     from_file = _agree(capsys, out)
     assert from_file["agreement"] == [r for r in told["agreement"] if r["kind"] == "human-human"]
+
+
+def test_a_run_that_nobody_judged_has_no_human_study(tmp_path: Path):
+    assert human_study([judged_run(tmp_path, episodes=1, cycles=1)]) is None
 
 
 def test_a_reevaluation_stands_beside_what_was_recorded(tmp_path: Path):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from c2nav_engine.experiments.report.content import Annex
 from c2nav_engine.experiments.report.grids import Grid, GridRow
 from c2nav_engine.experiments.report.writing import write_report
 from c2nav_engine.experiments.report.writing_text import latex, markdown
@@ -111,6 +112,19 @@ def test_the_same_rows_give_the_same_bytes(tmp_path: Path) -> None:
     for path in sorted((tmp_path / "a").rglob("*.*")):
         twin = tmp_path / "b" / path.relative_to(tmp_path / "a")
         assert path.read_bytes() == twin.read_bytes(), path.name
+
+
+def test_an_annex_follows_the_chapters_in_every_text_format(tmp_path: Path) -> None:
+    make_run(tmp_path / "run", ("full",), by_chance(RATES), episodes=4)
+    grid = Grid("study", "Agreement", ("Pair", "Mean τ"), (GridRow(("Ann · Bob", "0.25")),))
+    annex = Annex("Human study", ("Two people.",), (grid,))
+    write_report([tmp_path / "run"], tmp_path / "out", annexes=(annex,))
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    text = (tmp_path / "out" / "report.md").read_text(encoding="utf-8")
+    for written in (page, text):
+        assert written.rindex("Human study") > written.rindex("Models: ")
+        assert "Two people." in written and "Ann · Bob" in written
+    assert r"$\tau$" in (tmp_path / "out" / "latex" / "study.tex").read_text(encoding="utf-8")
 
 
 def test_what_n_cannot_resolve_is_said(out: Path) -> None:

@@ -78,23 +78,40 @@ class Chapter:
 
 
 @dataclass(frozen=True, slots=True)
+class Annex:
+    """Tables that come from elsewhere than episodes, such as a human study.
+
+    Attributes:
+        title: Heading.
+        notes: What a reader must know first.
+        grids: Its tables.
+    """
+
+    title: str
+    notes: tuple[str, ...]
+    grids: tuple[Grid, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Report:
     """Everything that is written.
 
     Attributes:
         runs: What it is made from.
         chapters: One a section; models first.
+        annexes: What follows the chapters.
     """
 
     runs: tuple[Run, ...]
     chapters: tuple[Chapter, ...]
+    annexes: tuple[Annex, ...] = ()
 
 
-def report_of(runs: Sequence[Run]) -> Report:
+def report_of(runs: Sequence[Run], annexes: Sequence[Annex] = ()) -> Report:
     """Sort, measure and test; nothing is written."""
     sections = sections_of(runs)
     chapters = tuple(_chapter(section, place) for place, section in enumerate(sections))
-    return Report(tuple(runs), chapters)
+    return Report(tuple(runs), chapters, tuple(annexes))
 
 
 def _chapter(section: Section, place: int) -> Chapter:

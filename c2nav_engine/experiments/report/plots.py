@@ -10,13 +10,7 @@ from typing import Any
 from c2nav_engine.experiments.estimates import figure
 from c2nav_engine.experiments.report.behaviour import SlotUse
 from c2nav_engine.experiments.report.content import Chapter
-from c2nav_engine.experiments.report.reported import (
-    COMPONENTS,
-    FACULTIES,
-    INVERSIONS,
-    Reported,
-    backbone_of,
-)
+from c2nav_engine.experiments.report.reported import Reported, reported_beside
 from c2nav_engine.experiments.statistics.intervals import Interval
 
 _INK, _REPORTED, _GRID = "#1f2933", "#b45309", "#d9dee3"
@@ -34,7 +28,6 @@ _STYLE = {
     "ytick.color": _INK,
 }
 _SVG_FACTS = ("Date", "Creator", "Format", "Type")
-_REPORTED_BY_VARIANT = {**FACULTIES, **COMPONENTS, **INVERSIONS}
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,10 +87,7 @@ def _reported(chapter: Chapter, variants: Sequence[str], ranker: str) -> Reporte
     """The reported row beside an arm: its backbone's for `full`, else the ablation's."""
     if chapter.section.privileged:
         return None
-    if "full" in variants and (row := backbone_of(ranker)) is not None:
-        return row
-    known = (_REPORTED_BY_VARIANT.get(variant) for variant in variants)
-    return next((row for row in known if row is not None), None)
+    return reported_beside(variants, ranker)
 
 
 def _latency(chapter: Chapter, folder: Path) -> Plot:

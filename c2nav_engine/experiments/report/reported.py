@@ -6,7 +6,7 @@ against them is possible: ours can only be said to hold them inside its interval
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 OPENNAV_100_SHA256 = "742f0d064756fba5b530bf0a682ff51928716f1a93a6521e63ae5c43214f893c"
@@ -125,3 +125,12 @@ def backbone_of(ranker: str) -> Reported | None:
     folded = ranker.casefold()
     names = {row.labels[0].casefold().removesuffix("-instruct"): row for row in BACKBONES}
     return next((row for name, row in names.items() if name in folded), None)
+
+
+def reported_beside(variants: Iterable[str], ranker: str) -> Reported | None:
+    """The row beside a configuration: its backbone's for `full`, else the ablation's or None."""
+    variants = tuple(variants)
+    if "full" in variants and (row := backbone_of(ranker)) is not None:
+        return row
+    known = {**FACULTIES, **COMPONENTS, **INVERSIONS}
+    return next((known[variant] for variant in variants if variant in known), None)

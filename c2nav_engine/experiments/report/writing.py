@@ -9,7 +9,8 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from c2nav_engine.experiments.report.content import Chapter, Report, report_of
+from c2nav_engine.experiments.report.content import Annex, Chapter, Report, report_of
+from c2nav_engine.experiments.report.grids import Grid
 from c2nav_engine.experiments.report.plots import Plot, write_plots
 from c2nav_engine.experiments.report.reading import read_run
 from c2nav_engine.experiments.report.writing_csv import write_csv
@@ -18,22 +19,27 @@ from c2nav_engine.experiments.report.writing_text import latex, markdown
 TEMPLATE = Path(__file__).with_name("page.html.j2")
 
 
-def write_report(folders: Sequence[Path], out: Path) -> Report:
+def write_report(folders: Sequence[Path], out: Path, *, annexes: Sequence[Annex] = ()) -> Report:
     """Read runs and write `report.html`, `report.md`, `csv/`, `latex/` and `plots/` below `out`.
+
+    Args:
+        folders: Run folders.
+        out: Made where it is missing.
+        annexes: Tables to add after those of the runs.
 
     Raises:
         UsageError: A folder is no run.
     """
-    report = report_of([read_run(folder) for folder in folders])
+    report = report_of([read_run(folder) for folder in folders], annexes)
     places = {name: out / name for name in ("csv", "latex", "plots")}
     for place in places.values():
         place.mkdir(parents=True, exist_ok=True)
     plots = [write_plots(chapter, places["plots"]) for chapter in report.chapters]
     write_csv(report, places["csv"])
-    for chapter in report.chapters:
-        for grid in chapter.grids():
-            path = places["latex"] / f"{chapter.key}{grid.key}.tex"
-            path.write_text(latex(grid), encoding="utf-8")
+    grids = [(chapter.key, grid) for chapter in report.chapters for grid in chapter.grids()]
+    grids += [("", grid) for annex in report.annexes for grid in annex.grids]
+    for key, grid in grids:
+        (places["latex"] / f"{key}{grid.key}.tex").write_text(latex(grid), encoding="utf-8")
     (out / "report.md").write_text(_markdown(report), encoding="utf-8")
     (out / "report.html").write_text(_html(report, plots), encoding="utf-8")
     return report
@@ -42,11 +48,15 @@ def write_report(folders: Sequence[Path], out: Path) -> Report:
 def _markdown(report: Report) -> str:
     parts = ["# Report\n"]
     parts += [f"- {_run_line(report, place)}\n" for place in range(len(report.runs))]
-    for chapter in report.chapters:
-        parts.append(f"\n## {chapter.title}\n\n")
-        parts += [f"{note}\n\n" for note in chapter.notes]
-        parts += [markdown(grid) + "\n" for grid in chapter.grids()]
+    for part in (*report.chapters, *report.annexes):
+        parts.append(f"\n## {part.title}\n\n")
+        parts += [f"{note}\n\n" for note in part.notes]
+        parts += [markdown(grid) + "\n" for grid in _grids(part)]
     return "".join(parts)
+
+
+def _grids(part: Chapter | Annex) -> tuple[Grid, ...]:
+    return part.grids if isinstance(part, Annex) else tuple(part.grids())
 
 
 def _html(report: Report, plots: Sequence[Sequence[Plot]]) -> str:
@@ -57,24 +67,25 @@ def _html(report: Report, plots: Sequence[Sequence[Plot]]) -> str:
     return template.render(
         runs=[_run_line(report, place) for place in range(len(report.runs))],
         chapters=[
-            _chapter(chapter, drawn) for chapter, drawn in zip(report.chapters, plots, strict=True)
+            *(_part(chapter, drawn) for chapter, drawn in zip(report.chapters, plots, strict=True)),
+            *(_part(annex, ()) for annex in report.annexes),
         ],
     )
 
 
-def _chapter(chapter: Chapter, plots: Sequence[Plot]) -> dict[str, Any]:
+def _part(part: Chapter | Annex, plots: Sequence[Plot]) -> dict[str, Any]:
     return {
-        "title": chapter.title,
-        "notes": chapter.notes,
-        "grids": list(chapter.grids()),
+        "title": part.title,
+        "notes": part.notes,
+        "grids": _grids(part),
         "plots": [{"title": plot.title, "svg": _inline(plot.svg)} for plot in plots],
     }
 
 
 def _inline(svg: Path) -> Markup:
-    """The drawing without its XML prologue; matplotlib wrote it a moment ago."""
+    """The drawing without its XML prologue; matplotlib wrote it a moment ago, so it is safe."""
     text = svg.read_text(encoding="utf-8")
-    return Markup(text[text.index("<svg") :])  # noqa: S704
+    return Markup(text[text.index("<svg") :])  # noqa: S704 no outside text is in it
 
 
 def _run_line(report: Report, place: int) -> str:
