@@ -22,6 +22,7 @@ const PLAIN = {
   c: () => send("verdict", { value: "cannot tell" }),
   t: () => openTab("Review"),
   f: () => send("flag"),
+  v: () => send("reveal"),
   u: () => send("undo"),
   r: () => send("redo"),
   g: () => send("layer", { name: "goal", on: !state.view.layers.includes("goal") }),
@@ -55,7 +56,10 @@ export function keys(event) {
   const key = event.key.toLowerCase();
   let action = PLAIN[key];
   if (event.shiftKey && key === "b") action = () => send("jump", { to: "worst_suspect" });
-  if (/^[1-9]$/.test(key)) action = () => send("press", { position: Number(key) - 1 });
+  // Shift and a digit have a sign of their own on every keyboard: the key's place tells the digit.
+  if (event.shiftKey && /^Digit[1-9]$/.test(event.code))
+    action = () => send("better", { position: Number(event.code.at(-1)) - 1 });
+  else if (/^[1-9]$/.test(key)) action = () => send("press", { position: Number(key) - 1 });
   if (!action || (event.repeat && key !== "arrowright" && key !== "arrowleft")) return;
   event.preventDefault();
   event.stopPropagation();

@@ -32,6 +32,8 @@ const GROUPS = [
       ["S", "acceptable"],
       ["W", "wrong"],
       ["C", "cannot tell"],
+      ["Shift 1 2 3", "A, B, C would have been better"],
+      ["V", "show the covered answer"],
       ["T", "tags"],
       ["F", "flag"],
       ["U R", "undo, redo"],

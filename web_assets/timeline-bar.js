@@ -31,6 +31,10 @@ const styles = styled(`
   .heretext { fill: var(--c2-blue-text); font-weight: 600; paint-order: stroke; stroke: var(--c2-card);
     stroke-width: 4px; }
   .mark rect.regret { fill: var(--c2-ink); }
+  .flag { cursor: ew-resize; }
+  .flag line { stroke: var(--c2-blue); stroke-width: 1.5; stroke-dasharray: 5 2; }
+  .flag text { fill: var(--c2-blue-text); font-weight: 600; }
+  .flag rect { fill: transparent; }
   .tip { position: absolute; bottom: calc(100% + 4px); background: var(--c2-ink); color: var(--c2-card);
     border-radius: 6px; padding: 3px 8px; font-size: 12px; white-space: nowrap; pointer-events: none;
     max-width: 480px; overflow: hidden; text-overflow: ellipsis; }
@@ -68,6 +72,7 @@ class TimelineBar extends HTMLElement {
     this.step = (x) => Math.round(((x - LEFT) * steps) / (width - LEFT - RIGHT));
     const svg = s("svg", { width, height: 112, role: "img" });
     svg.append(...this.curve(timeline, width), ...this.lanes(timeline), ...this.here(timeline, width));
+    for (const end of timeline.leg_ends ?? []) svg.append(this.flag(end));
     svg.addEventListener("pointerdown", (event) => this.scrub(event));
     this.shadowRoot.replaceChildren(svg, this.tip);
   }
@@ -202,6 +207,37 @@ class TimelineBar extends HTMLElement {
       s("line", { class: "here", x1: x, x2: x, y1: 2, y2: 110 }),
       s("text", { class: "heretext", x: flip ? x - 7 : x + 7, y: 13, "text-anchor": flip ? "end" : "start" }, words),
     ];
+  }
+
+  /** Where a person says that a leg ends; dragging says it anew. */
+  flag({ leg, step }) {
+    const group = s(
+      "g",
+      { class: "flag", "data-leg": leg },
+      s("line", { x1: 0, x2: 0, y1: CURVE.top, y2: EVENTS }),
+      s("rect", { x: -8, y: 0, width: 34, height: 24 }),
+      s("text", { x: -1, y: CURVE.top + 10 }, `⚑${leg + 1}`),
+    );
+    const put = (at) => group.setAttribute("transform", `translate(${this.x(at)} 0)`);
+    put(step);
+    this.reacts(group, { step, words: `your leg ${leg + 1} ends at step ${step} · drag it` }, null);
+    group.addEventListener("pointerdown", (event) => {
+      event.stopPropagation();
+      let wanted = step;
+      const move = ({ clientX }) => {
+        const at = this.step(clientX - this.getBoundingClientRect().left);
+        wanted = Math.max(0, Math.min(this.timeline.last, at));
+        put(wanted);
+      };
+      const end = () => {
+        window.removeEventListener("pointermove", move);
+        window.removeEventListener("pointerup", end);
+        if (wanted !== step) send("leg_end", { leg, step: wanted });
+      };
+      window.addEventListener("pointermove", move);
+      window.addEventListener("pointerup", end);
+    });
+    return group;
   }
 
   /** Dragging goes through steps; the newest position wins. */

@@ -8,6 +8,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from app.reviews.audit import AuditBook, store_beside
+from app.reviews.store import FILE as STORE
 from app.session.opened import Choice, Entry, ForkAt, Opened, Opening, Run
 from app.session.reasked import NOTHING, ByDecision, by_trace
 from c2nav_engine.contract.question import Picture
@@ -71,6 +73,7 @@ def opened_source(setting: Setting) -> Opened:
         variants=tuple(PRESETS),
         rankers=tuple(RANKERS),
         sends_to=host_beyond(setting),
+        book=_book_of_new,
     )
 
 
@@ -149,7 +152,16 @@ def opened_traces(
         open=lambda choice: _recorded(by_id[choice.entry_id], scenes, reasked),
         fork=partial(_fork_recorded, setting),
         rankers=tuple(RANKERS),
+        book=lambda entry, sha256: (
+            AuditBook(store_beside(by_id[entry]), sha256) if sha256 else _book_of_new()
+        ),
     )
+
+
+def _book_of_new(entry: str = "", sha256: str = "") -> AuditBook:
+    """Reviews of an episode that is being made: they go beside its trace once that is finished."""
+    del entry, sha256
+    return AuditBook(INSPECTED / STORE)
 
 
 def _reasked(paths: Sequence[Path], files: Sequence[Path]) -> Mapping[str, ByDecision]:

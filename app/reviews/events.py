@@ -37,6 +37,8 @@ class Kind(enum.StrEnum):
     LEG_END = "leg-end"
     """Where a leg ends on the path: `extra["leg"]` from 0, `extra["at_m"]` along the path."""
     NOTE = "note"
+    REVEAL = "reveal"
+    """The model's answer was shown to the person; that cannot be taken back."""
     UNDO = "undo"
     REDO = "redo"
 

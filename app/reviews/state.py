@@ -80,6 +80,8 @@ def last_to_redo(events: Sequence[Event], author: str) -> Event | None:
 
 
 def _after(opinion: Opinion, event: Event) -> Opinion:
+    if event.kind is Kind.REVEAL:
+        return opinion
     opinion = replace(opinion, blind=opinion.blind and event.blind)
     if event.kind in VERDICTS:
         return replace(opinion, verdict=event.kind.value)

@@ -228,6 +228,42 @@ class Tag(Command):
     value: str = Field(min_length=1, max_length=60)
 
 
+class Better(Command):
+    """Name the better alternative, by key or by its letter's position (0 is A), or take it back."""
+
+    type: Literal["better"] = "better"
+    key: Key = ""
+    position: int = -1
+
+
+class LegEnd(Command):
+    """Say at which low-level step a leg ends, both from 0."""
+
+    type: Literal["leg_end"] = "leg_end"
+    leg: int = Field(ge=0, le=100)
+    step: int = Field(ge=0)
+
+
+class Cover(Command):
+    """Cover the answers that are not yet made one's own, or show them all again."""
+
+    type: Literal["cover"] = "cover"
+    on: bool
+
+
+class Reveal(Command):
+    """Show the covered answer of the decision in view; it has been seen from then on."""
+
+    type: Literal["reveal"] = "reveal"
+
+
+class Tags(Command):
+    """Replace the list of tags to choose from."""
+
+    type: Literal["tags"] = "tags"
+    names: tuple[str, ...] = Field(max_length=100)
+
+
 class Flag(Command):
     """Mark the decision in view for later, or take the mark off."""
 
@@ -287,6 +323,11 @@ AnyCommand = Annotated[
     | ForgetPlace
     | Verdict
     | Tag
+    | Better
+    | LegEnd
+    | Cover
+    | Reveal
+    | Tags
     | Flag
     | Remark
     | Undo

@@ -14,11 +14,11 @@ from typing import Any
 from app.session.assessing import Assessor, assessor_of
 from app.session.branches import Branch, Origin
 from app.session.draft import Draft
-from app.session.judging import Bench
 from app.session.opened import Choice, Opened, Opening, Run
 from app.session.pictures import Album
 from app.session.placing import Sight
-from app.session.snapshot import Assessment, Chooser, Notice, Snapshot
+from app.session.shelf import Shelf
+from app.session.snapshot import Assessment, Chooser, Notice, Reviews, Snapshot, View
 from app.session.story import Story, story_of
 from c2nav_engine.errors import C2NavError
 from c2nav_engine.navigator.requests import Ask
@@ -60,7 +60,7 @@ class Desk:
         self.opened = opened
         self.album = album
         self.hands = hands
-        self.bench = Bench()
+        self.shelf = Shelf(opened.book)
         self.branches: dict[str, Branch] = {}
         self.stories: dict[str, Story] = {}
         self.runs: dict[str, Run] = {}
@@ -109,8 +109,9 @@ class Desk:
         self.scene = None
         self.sight = None
         self.commit_when_answered = False
-        self.bench = Bench(opening.trace_sha256)
+        self.shelf.clear()
         branch = self._root(opening)
+        problem = self.shelf.put(branch, choice.entry_id)
         if opening.run is not None:
             self.runs[branch.branch_id] = opening.run
         self._read(branch)
@@ -130,6 +131,10 @@ class Desk:
             branch=branch,
             story=self.stories[branch.branch_id],
             stop=0,
+            view=View(blind=self.opened.blind),
+            reviews={branch.branch_id: self._reviews(branch.branch_id)},
+            tags=self.shelf.tags(branch.branch_id),
+            notice=Notice(problem, fault=True, serial=1) if problem else Notice(),
             no_scene=opening.no_scene,
             reasked=opening.reasked,
         )
@@ -181,9 +186,20 @@ class Desk:
             branch.header, branch.exchanges, pending=branch.pending, footer=branch.footer
         )
 
+    def _reviews(self, branch_id: str) -> Reviews:
+        return self.shelf.reviews(branch_id, self.stories[branch_id])
+
+    def reread(self, branch_id: str) -> None:
+        """Show what is said of a branch now."""
+        reviews = {**self.snapshot.reviews, branch_id: self._reviews(branch_id)}
+        self.change(reviews=reviews, tags=self.shelf.tags(branch_id))
+
     def put(self, branch: Branch) -> None:
         """Add a branch or replace an older state of it."""
         self._read(branch)
+        problem = self.shelf.put(branch, self.snapshot.chooser.choice.entry_id)
+        if problem:
+            self.say(problem, fault=True)
         fields: dict[str, Any] = {"branches": tuple(self.branches.values())}
         if self.snapshot.branch.branch_id == branch.branch_id:
             story = self.stories[branch.branch_id]

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
 from app.session.branches import Branch, Origin, fork_estimate, median_query_s
 from app.session.desk import Desk, Errand, Message
 from app.session.draft import Draft, outcome_of
@@ -12,6 +15,9 @@ from c2nav_engine.contract.question import Orders, Question
 from c2nav_engine.errors import C2NavError, UsageError
 from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.runner.exchange import Override
+
+Then = Callable[[Desk, str], None]
+"""What follows once a new branch, named by its id, stands."""
 
 HUMAN = "human"
 """A run whose ranker is the person at the page: nothing is ever proposed."""
@@ -47,6 +53,8 @@ def refresh(desk: Desk, branch_id: str) -> None:
             fork_decision=old.fork_decision,
         )
     )
+    if run.trace_sha256:
+        desk.shelf.bind(branch_id, run.trace_sha256)
 
 
 def ask(desk: Desk, branch_id: str) -> None:
@@ -175,20 +183,51 @@ def offer_fork(desk: Desk) -> None:
 
 def fork(desk: Desk, why: str) -> None:
     """Start a branch with the person's answer at the decision in view."""
-    decision, parent = desk.snapshot.decision, desk.snapshot.branch
-    start = desk.opened.fork
-    if decision is None or start is None:
+    decision = desk.snapshot.decision
+    if decision is not None:
+        ranker = desk.snapshot.chooser.choice.ranker
+        branch_off(desk, Leaving(decision.number, override_of(desk, why), ranker))
+
+
+@dataclass(frozen=True, slots=True)
+class Leaving:
+    """How the branch in view is left.
+
+    Attributes:
+        decision: Where.
+        override: The other answer.
+        ranker: Who answers from then on.
+        options: Of that ranker; None for those that were given at the start.
+    """
+
+    decision: int
+    override: Override
+    ranker: str
+    options: Mapping[str, str] | None = None
+
+
+def branch_off(desk: Desk, leaving: Leaving, *, then: Then = lambda _desk, _branch_id: None) -> None:
+    """Start a branch with another answer in the branch in view, and stand in it.
+
+    Args:
+        desk: The session's truth.
+        leaving: Where and how.
+        then: Called with the new branch's id once it stands.
+    """
+    parent, start = desk.snapshot.branch, desk.opened.fork
+    if start is None:
         return
-    override = override_of(desk, why)
     wanted = ForkAt(
         parent.header,
         parent.exchanges,
-        decision.number,
-        override,
-        desk.snapshot.chooser.choice.ranker,
+        leaving.decision,
+        leaving.override,
+        leaving.ranker,
+        leaving.options,
     )
     generation = desk.generation
-    desk.change(offer=None, draft=Draft(), working=f"forking at decision {decision.number}")
+    desk.change(offer=None, draft=Draft(), working=f"forking at decision {leaving.decision}")
+    origin = (parent.branch_id, leaving.decision)
 
     def task() -> Message:
         try:
@@ -196,7 +235,13 @@ def fork(desk: Desk, why: str) -> None:
         except C2NavError as error:
             problem = str(error)
             return lambda desk: not_forked(desk, problem)
-        return lambda desk: forked(desk, generation, (parent.branch_id, decision.number), run)
+
+        def message(desk: Desk) -> None:
+            branch_id = forked(desk, generation, origin, run)
+            if branch_id:
+                then(desk, branch_id)
+
+        return message
 
     desk.hands.background(task)
 
@@ -207,11 +252,11 @@ def not_forked(desk: Desk, problem: str) -> None:
     desk.say(problem, fault=True)
 
 
-def forked(desk: Desk, generation: int, origin: tuple[str, int], run: Run) -> None:
-    """A fork stands at its first new request."""
+def forked(desk: Desk, generation: int, origin: tuple[str, int], run: Run) -> str:
+    """A fork stands at its first new request; returns its branch, "" where it comes too late."""
     if generation != desk.generation:
         run.close()
-        return
+        return ""
     desk.change(working="")
     branch_id = desk.new_branch_id()
     desk.runs[branch_id] = run
@@ -230,6 +275,7 @@ def forked(desk: Desk, generation: int, origin: tuple[str, int], run: Run) -> No
     )
     settle(desk, branch_id)
     desk.stand(desk.stories[branch_id].stop_of_decision(decision + 1), branch_id)
+    return branch_id
 
 
 def cancel(desk: Desk) -> None:

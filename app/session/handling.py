@@ -6,12 +6,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from app.session import asking, driving, judging, moving, placing
+from app.session import asking, driving, judging, moving, placing, reviewing
 from app.session import commands as c
 from app.session.branches import Origin
 from app.session.desk import Desk
 from app.session.draft import Draft, arranged, none_of_these, press, take_back, tie
 from app.session.opened import Choice
+from app.session.veil import covered
 
 _ON_THE_WAY_M = 0.2
 """A click this near to the trajectory means its step, not the floor below."""
@@ -99,6 +100,8 @@ def _commit(desk: Desk, command: c.Commit) -> None:
             driving.commit(desk, branch_id, driving.override_of(desk, command.why))
     elif desk.snapshot.draft.empty:
         moving.by_decision(desk, 1)
+    elif covered(desk.snapshot):
+        reviewing.answer_blind(desk)
     elif desk.snapshot.offer is None:
         driving.offer_fork(desk)
     else:
@@ -130,29 +133,7 @@ def _layer(desk: Desk, command: c.Layer) -> None:
 
 
 def _judged(change: Callable[[Any], judging.Change]) -> Handler:
-    def handler(desk: Desk, command: c.Command) -> None:
-        decision = desk.snapshot.decision
-        if decision is not None:
-            desk.bench.judge(decision.number, change(command))
-            desk.change(judgements=desk.bench.judgements())
-
-    return handler
-
-
-def _undo(desk: Desk, _: c.Undo) -> None:
-    _after_undo(desk, desk.bench.undo(), "Nothing to undo")
-
-
-def _redo(desk: Desk, _: c.Redo) -> None:
-    _after_undo(desk, desk.bench.redo(), "Nothing to redo")
-
-
-def _after_undo(desk: Desk, decision: int | None, otherwise: str) -> None:
-    if decision is None:
-        desk.say(otherwise)
-        return
-    desk.change(judgements=desk.bench.judgements())
-    desk.stand(desk.snapshot.story.stop_of_decision(decision))
+    return lambda desk, command: reviewing.judge(desk, change(command))
 
 
 def _view(**of: Callable[[Any], Any]) -> Handler:
@@ -171,7 +152,7 @@ _HANDLERS: dict[type[c.Command], Handler] = {
     c.Pause: lambda desk, _: desk.change(playing=""),
     c.RunTo: lambda desk, command: moving.play(desk, command.until),
     c.Open: _open,
-    c.Jump: lambda desk, command: moving.jump(desk, command.to),
+    c.Jump: reviewing.jump,
     c.Press: _press,
     c.Arrange: _arrange,
     c.Tie: _drafted(tie),
@@ -188,11 +169,16 @@ _HANDLERS: dict[type[c.Command], Handler] = {
     c.Layer: _layer,
     c.Place: _place,
     c.ForgetPlace: lambda desk, _: desk.change(place=None),
-    c.Verdict: _judged(lambda command: judging.verdict(command.value)),
+    c.Verdict: reviewing.verdict,
+    c.Better: reviewing.better,
+    c.LegEnd: reviewing.leg_end,
+    c.Cover: reviewing.cover,
+    c.Reveal: lambda desk, _: reviewing.reveal(desk),
+    c.Tags: reviewing.keep_tags,
     c.Tag: _judged(lambda command: judging.tag(command.value)),
     c.Flag: _judged(lambda _: judging.flag()),
     c.Remark: _judged(lambda command: judging.remark(command.text)),
-    c.Undo: _undo,
-    c.Redo: _redo,
+    c.Undo: lambda desk, _: reviewing.undo(desk),
+    c.Redo: lambda desk, _: reviewing.redo(desk),
     c.Name: lambda desk, command: desk.change(who=command.who or "person 1"),
 }

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from app.session.book import Book
 from app.session.reasked import NOTHING, ByDecision
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.contract.question import Picture
@@ -37,6 +38,11 @@ class Run(Protocol):
     @property
     def footer(self) -> Footer | None:
         """How it ended."""
+        ...
+
+    @property
+    def trace_sha256(self) -> str:
+        """Digest of the finished trace; "" before, or where nothing is recorded."""
         ...
 
     def advance(self) -> Exchange:
@@ -125,6 +131,7 @@ class ForkAt:
         decision: Where it is left.
         override: The new answer there.
         ranker: Who answers from then on; "" for whoever was named at the start.
+        options: Of that ranker; None for those that were given at the start.
     """
 
     header: Header
@@ -132,6 +139,7 @@ class ForkAt:
     decision: int
     override: Override
     ranker: str = ""
+    options: Mapping[str, str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +155,9 @@ class Opened:
         variants: Names to choose from; empty for recordings.
         rankers: Names to choose from; empty for recordings.
         sends_to: Host outside this machine that pictures would go to; "" for none.
+        book: Opens the reviews of an entry's trace with that digest, or of a new one ("");
+            None where nothing can be reviewed.
+        blind: Whether answers are covered at the start.
     """
 
     title: str
@@ -157,3 +168,5 @@ class Opened:
     variants: tuple[str, ...] = ()
     rankers: tuple[str, ...] = ()
     sends_to: str = ""
+    book: Callable[[str, str], Book] | None = None
+    blind: bool = False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from app.session.branches import Branch
@@ -12,6 +12,7 @@ from app.session.draft import Draft
 from app.session.opened import Choice, Entry
 from app.session.reasked import NOTHING, ByDecision, Reasked, shared_until
 from app.session.story import Stop, Story
+from c2nav_engine.contract.outcome import Answered, Key
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.geometry import Point
 
@@ -64,14 +65,42 @@ class Notice:
     serial: int = 0
 
 
+WHOLE = -1
+"""Stands for the episode as a whole where a decision is named: leg ends belong to no decision."""
+
+
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """What people said about one decision."""
+    """What one person says about one decision.
+
+    Attributes:
+        verdict: "agree", "acceptable", "wrong", "cannot tell" or "".
+        tags: In the order they were put on.
+        flagged: Marked for later.
+        note: Free words.
+        better: The alternative that would have been better; "" for none.
+        ranking: Their own answer; None for none.
+        leg_ends: Leg → the low-level step at which it ends.
+        blind: Whether all of it was said with the model's answer hidden.
+    """
 
     verdict: str = ""
     tags: tuple[str, ...] = ()
     flagged: bool = False
     note: str = ""
+    better: Key = ""
+    ranking: Answered | None = None
+    leg_ends: Mapping[int, int] = field(default_factory=dict[int, int])
+    blind: bool = True
+
+    @property
+    def says_something(self) -> bool:
+        """Whether there is anything but the default."""
+        return replace(self, blind=True) != Judgement()
+
+
+Reviews = dict[tuple[str, int], Judgement]
+"""(Author, decision) → what they say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,12 +168,14 @@ class View:
         kind: Which disagreement the bracket keys look for.
         layers: Shown layers.
         hovered: Lit alternative; "" for none.
+        blind: Whether answers stay covered until they are revealed.
     """
 
     camera: str = "free"
     kind: Literal["any", "orders", "person", "reasked", "best"] = "any"
     layers: frozenset[str] = LAYERS_AT_FIRST
     hovered: str = ""
+    blind: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +206,10 @@ class Snapshot:
         offer: A fork that waits for a yes.
         playing: "" or what it plays to ("play", "seeing", …, "end").
         view: How the map is looked at.
-        judgements: (branch root trace, decision) → what people said.
+        reviews: Branch → (author, decision) → what they say.
+        tags: The list of tags to choose from.
+        revealed: Branches and decisions whose answers were revealed while covered.
+        covered: Whether the answer of the decision in view is covered.
         notice: Last message.
         driver: Page that sent the last command.
         who: Name of the person.
@@ -201,7 +235,10 @@ class Snapshot:
     offer: ForkOffer | None = None
     playing: str = ""
     view: View = field(default_factory=View)
-    judgements: dict[int, Judgement] = field(default_factory=dict[int, Judgement])
+    reviews: dict[str, Reviews] = field(default_factory=dict[str, Reviews])
+    tags: tuple[str, ...] = ()
+    revealed: frozenset[tuple[str, int]] = frozenset()
+    covered: bool = False
     notice: Notice = field(default_factory=Notice)
     driver: str = ""
     who: str = "person 1"
@@ -225,6 +262,22 @@ class Snapshot:
     def decision(self) -> Decision | None:
         """The decision in view: the one here, or the last one before."""
         return self.story.decision_at(self.stop)
+
+    @property
+    def judgements(self) -> dict[int, Judgement]:
+        """What who sits at the page says of the branch in view, by decision."""
+        reviews = self.reviews.get(self.branch.branch_id, {})
+        return {number: said for (who, number), said in reviews.items() if who == self.who}
+
+    @property
+    def others(self) -> dict[str, Judgement]:
+        """What everybody else says of the decision in view, by author."""
+        reviews = self.reviews.get(self.branch.branch_id, {})
+        return {
+            who: said
+            for (who, number), said in reviews.items()
+            if number == self.here.decision and who != self.who
+        }
 
     @property
     def assessments(self) -> dict[int, Assessment]:

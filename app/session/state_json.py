@@ -8,7 +8,7 @@ from app.session.branches import Origin, cost_of, ended_words
 from app.session.cards import decision_json, lookback_json
 from app.session.decisions import Decision
 from app.session.route_text import route_segments
-from app.session.snapshot import Snapshot
+from app.session.snapshot import Judgement, Snapshot
 from app.session.timeline import timeline_of
 
 Json = dict[str, Any]
@@ -52,7 +52,9 @@ def state_json(snapshot: Snapshot) -> Json:
             "camera": snapshot.view.camera,
             "layers": sorted(snapshot.view.layers),
             "hovered": snapshot.view.hovered,
+            "blind": snapshot.view.blind,
         },
+        "covered": snapshot.covered,
         "timeline": timeline_of(snapshot),
         "judgement": _judgement(snapshot),
         "notice": {
@@ -115,6 +117,8 @@ def branch_label(snapshot: Snapshot) -> str:
     """What the banner says."""
     branch = snapshot.branch
     how = "live" if branch.running else ended_words(branch.footer)
+    if snapshot.view.blind:
+        return f"blind · the answer is {'covered' if snapshot.covered else 'shown'}"
     match branch.origin:
         case Origin.RECORDED:
             return f"recorded · {how}"
@@ -151,10 +155,12 @@ def _offer(snapshot: Snapshot) -> Json | None:
 
 
 def _judgement(snapshot: Snapshot) -> Json:
-    judgement = snapshot.judgements.get(snapshot.here.decision)
+    judgement = snapshot.judgements.get(snapshot.here.decision, Judgement())
     return {
-        "verdict": judgement.verdict if judgement else "",
-        "tags": judgement.tags if judgement else (),
-        "flagged": judgement.flagged if judgement else False,
-        "note": judgement.note if judgement else "",
+        "verdict": judgement.verdict,
+        "better": judgement.better,
+        "tags": judgement.tags,
+        "flagged": judgement.flagged,
+        "note": judgement.note,
+        "blind": judgement.blind,
     }

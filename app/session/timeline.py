@@ -7,7 +7,7 @@ from typing import Any
 
 from app.session.decisions import Decision
 from app.session.differing import reasked_differ
-from app.session.snapshot import SUSPECT_M, Judgement, Snapshot
+from app.session.snapshot import SUSPECT_M, WHOLE, Judgement, Snapshot
 from app.session.story import Story
 from app.session.wording import is_fault, outcome_words, slot_words
 from c2nav_engine.contract.outcome import Ordering
@@ -37,6 +37,7 @@ def timeline_of(snapshot: Snapshot) -> Json:
             *_reasked(snapshot),
         ],
         "legs": _legs(story),
+        "leg_ends": _leg_ends(snapshot.judgements),
         "place": _place(snapshot),
         "regret": [
             {"decision": s.decision, "step": story.decisions[s.decision].step, "m": s.regret_m}
@@ -105,7 +106,7 @@ def _people(story: Story, judgements: dict[int, Judgement]) -> list[Json]:
             "words": f"reviewed: {judgement.verdict or 'noted'}",
         }
         for number, judgement in sorted(judgements.items())
-        if number < len(story.decisions)
+        if 0 <= number < len(story.decisions)
     ]
     return [*overrides, *reviews]
 
@@ -120,6 +121,12 @@ def _reasked(snapshot: Snapshot) -> list[Json]:
             words = f"asked again at decision {decision.number}: {rankers} differs"
             found.append({"sign": "≠", "step": decision.step, "fault": False, "words": words})
     return found
+
+
+def _leg_ends(judgements: dict[int, Judgement]) -> list[Json]:
+    """Where the person at the page says that legs end."""
+    whole = judgements.get(WHOLE, Judgement())
+    return [{"leg": leg, "step": step} for leg, step in sorted(whole.leg_ends.items())]
 
 
 def _place(snapshot: Snapshot) -> Json | None:

@@ -19,6 +19,7 @@ from app.session.handling import handle
 from app.session.opened import Opened
 from app.session.pictures import Album
 from app.session.snapshot import Snapshot
+from app.session.veil import answers_shown, veiled
 from c2nav_engine.contract.question import Picture
 from c2nav_engine.errors import C2NavError
 from c2nav_engine.world.scene import Scene
@@ -44,7 +45,8 @@ class Session:
         self._subscribers: list[Subscriber] = []
         self._closing = threading.Event()
         self._desk = Desk(opened, self.album, Hands(self._background, clock))
-        self._published = self._desk.snapshot
+        self._behind: Snapshot = self._desk.snapshot
+        self._published: Snapshot = self._drawn()
         self._worker = threading.Thread(target=self._work, name="c2nav-session", daemon=True)
 
     @property
@@ -131,12 +133,19 @@ class Session:
             self._desk.say(f"{type(error).__name__}: {error}", fault=True)
 
     def _publish(self) -> None:
-        if self._desk.snapshot is self._published:
+        if self._desk.snapshot is self._behind:
             return
         self._desk.change(version=self._published.version + 1)
-        self._published = self._desk.snapshot
+        self._behind = self._desk.snapshot
+        self._published = self._drawn()
         for subscriber in list(self._subscribers):
             subscriber(self._published)
+
+    def _drawn(self) -> Snapshot:
+        """What may be drawn; whoever judges later has seen it."""
+        drawn = veiled(self._behind)
+        self._desk.shelf.note_shown(drawn.branch.branch_id, answers_shown(drawn))
+        return drawn
 
     def _background(self, task: Callable[[], Message]) -> None:
         # Daemon threads: a model that never answers must not keep the program from ending.

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import queue
 import threading
 from collections.abc import Callable, Iterator
 
@@ -12,27 +11,7 @@ from app.session.snapshot import Snapshot
 from app.session.worker import Session, StaleCommand
 from c2nav_engine.contract.outcome import Abstention, Ordering
 from tests.helpers import stage
-
-
-class Watched:
-    """A session whose snapshots can be waited for."""
-
-    def __init__(self, session: Session) -> None:
-        self.session = session
-        self._queue: queue.Queue[Snapshot] = queue.Queue()
-        session.subscribe(self._queue.put)
-        session.start()
-
-    def until(self, wanted: Callable[[Snapshot], bool]) -> Snapshot:
-        if wanted(self.session.snapshot):
-            return self.session.snapshot
-        while True:
-            snapshot = self._queue.get(timeout=20.0)
-            if wanted(snapshot):
-                return snapshot
-
-    def do(self, command: c.Command) -> None:
-        self.session.dispatch(command)
+from tests.helpers.watched import Watched
 
 
 @pytest.fixture

@@ -13,12 +13,15 @@ import threading
 import time
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import cv2
 import numpy as np
 
+from app.reviews.audit import AuditBook
 from app.session.opened import Choice, Entry, ForkAt, Opened, Opening
+from app.session.shelf import OpenBook
 from c2nav_engine.contract.outcome import ORDERS_DISAGREE, Abstention, Answered, Ordering
 from c2nav_engine.contract.presentation import presentations
 from c2nav_engine.contract.prompt import Query, Ranked, Reply
@@ -318,6 +321,7 @@ class PlayRun:
     def __post_init__(self) -> None:
         self.exchanges: list[Exchange] = []
         self.footer: Footer | None = None
+        self.trace_sha256 = ""
         self.pending: Request | None = next(self.script)
         self._pose = EPISODE.start
         self._steps = 0
@@ -467,6 +471,7 @@ def fork_of(wanted: ForkAt) -> PlayRun:
 
 def opened_live(
     *,
+    book: OpenBook | None = None,
     delay_s: float = 0.0,
     gate: threading.Event | None = None,
     cycles: int = 14,
@@ -482,11 +487,20 @@ def opened_live(
         fork=fork_of,
         variants=("full", "base"),
         rankers=("scripted", "human"),
+        book=book or in_memory,
         **extra,
     )
 
 
-def opened_recording(*, cycles: int = 14, scene: Any = None) -> Opened:
+def in_memory(entry: str, sha256: str) -> AuditBook:
+    """Reviews that are forgotten with the session."""
+    del entry, sha256
+    return AuditBook(Path("nowhere") / "reviews.sqlite")
+
+
+def opened_recording(
+    *, cycles: int = 14, scene: Any = None, book: OpenBook | None = None, blind: bool = False
+) -> Opened:
     """A recording with one entry."""
     run = finished_run(cycles)
     return Opened(
@@ -502,4 +516,6 @@ def opened_recording(*, cycles: int = 14, scene: Any = None) -> Opened:
             scene=scene,
         ),
         fork=fork_of,
+        book=book or in_memory,
+        blind=blind,
     )
