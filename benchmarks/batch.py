@@ -3,7 +3,7 @@
     python -m benchmarks.batch [SCENES]
 
 Every ratio is measured side by side in one run, so a busy machine slows both sides alike.
-`c2nav bench` imports `measure`.
+`c2nav bench` imports `measure` and `measure_lanes`.
 """
 
 from __future__ import annotations
@@ -160,6 +160,11 @@ def _flat_bench(setting: Setting, run: Path) -> Workbench:
     return replace(bench, profile=profile, worlds=Worlds(bench.source, config))
 
 
+def measure_lanes(_scenes: Path | None = None) -> dict[str, float]:
+    """`lanes8_over_1`: episodes that wait for a model, eight at once over one at a time."""
+    return {"lanes8_over_1": lanes_over_one()}
+
+
 def lanes_over_one(*, episodes: int = LANES) -> float:
     """Episodes a second with eight queries at once over one at a time, at 200 ms a query."""
     with _model_server() as address, tempfile.TemporaryDirectory() as folder:
@@ -263,7 +268,7 @@ def main() -> None:
     scenes = Path(sys.argv[1]) if len(sys.argv) > 1 else None
     rows = {
         "workers2_over_1": measure(scenes)["workers2_over_1"],
-        "lanes8_over_1": lanes_over_one(),
+        **measure_lanes(),
         "task_overhead_ms": overhead_ms(),
         "core_s_a_view": core_s_a_view(),
     }

@@ -20,9 +20,8 @@ from c2nav_engine.experiments.rankers import seats_for
 from c2nav_engine.runner.episode_run import run_to_end
 from c2nav_engine.runner.opening import OpenSpec, Workbench
 from c2nav_engine.runner.record import Footer, Header
-from c2nav_engine.runner.recorded import open_trace
 from c2nav_engine.runner.recording import TraceWriter
-from c2nav_engine.runner.source import open_source
+from c2nav_engine.runner.source import Source, open_source
 from c2nav_engine.runner.worlds import Worlds, WorldsConfig, embree
 from c2nav_engine.world.scene import Scene
 
@@ -64,7 +63,7 @@ class TimedWriter:
 
 
 def measure(scenes: Path | None = None) -> dict[str, float]:
-    """`cycle_over_render`, `trace_over_cycle` and `decision_bytes_share` of one episode.
+    """`cycle_over_render` and `trace_over_cycle` of one episode.
 
     Args:
         scenes: The shared scenes folder with the furnished house; the built-in houses without it.
@@ -76,7 +75,7 @@ def measure(scenes: Path | None = None) -> dict[str, float]:
         made.render = rendering.around(made.render)  # pyright: ignore
         return made
 
-    source, episode_id = _source(scenes)
+    source, episode_id = benched_episode(scenes)
     profile = replace(VLNCE, max_steps=STEPS)
     bench = Workbench(
         source=source,
@@ -93,18 +92,14 @@ def measure(scenes: Path | None = None) -> dict[str, float]:
         start_s = time.perf_counter()
         run_to_end(run)
         whole_s = time.perf_counter() - start_s
-        with open_trace(path) as opened:
-            for _ in opened.decisions():
-                pass
-            share = opened.file.bytes_read / opened.file.size_bytes
     return {
         "cycle_over_render": whole_s / rendering.spent_s,
         "trace_over_cycle": writing.spent_s / whole_s,
-        "decision_bytes_share": share,
     }
 
 
-def _source(scenes: Path | None) -> tuple[Any, str]:
+def benched_episode(scenes: Path | None) -> tuple[Source, str]:
+    """An episode of the furnished house where it is to be had, else a built-in one."""
     beside = scenes.parent / "data" / "furnished_house_8.json.gz" if scenes else None
     if beside is not None and beside.is_file():
         return open_source(str(beside), scenes=scenes), "3"

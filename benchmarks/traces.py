@@ -1,9 +1,10 @@
 """What writing and reading a trace costs.
 
-python benchmarks/traces.py TRACE.mcap [--seeks 300] [--seed 0] [--json]
+    python -m benchmarks.traces TRACE.mcap [--seeks 300] [--seed 0] [--json]
 
 Writing is measured by writing the trace's exchanges again; divide by the episode's own time for a
 share. The bytes of all decisions are counted where they are read, index and footer included.
+`c2nav bench traces` records an episode first and imports `measure`.
 """
 
 from __future__ import annotations
@@ -19,26 +20,60 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks.cycle import benched_episode
+from c2nav_engine.episodes.profile import VLNCE
+from c2nav_engine.experiments.rankers import seats_for
+from c2nav_engine.runner.episode_run import run_to_end
+from c2nav_engine.runner.opening import OpenSpec, Workbench
 from c2nav_engine.runner.recorded import Trace, open_trace, read_trace
 from c2nav_engine.runner.recording import TraceWriter
+from c2nav_engine.runner.worlds import Worlds, WorldsConfig
 from c2nav_engine.traces import check
 
 
-def measure(path: Path, *, seeks: int, seed: int) -> dict[str, float]:
-    """Every figure by name, seconds and shares."""
+def measure(scenes: Path | None = None) -> dict[str, float]:
+    """What reading decisions takes, on an episode that is recorded first.
+
+    Args:
+        scenes: The shared scenes folder with the furnished house; the built-in houses without it.
+    """
+    source, episode_id = benched_episode(scenes)
+    bench = Workbench(
+        source=source,
+        worlds=Worlds(source, WorldsConfig(VLNCE)),
+        profile=VLNCE,
+        seat_for=seats_for("reference-cv"),
+        recorder_for=TraceWriter,
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "bench.mcap"
+        run_to_end(bench.open(OpenSpec(episode_id, trace=path)))
+        return {
+            "decision_bytes_share": decision_bytes_share(path),
+            "decision_seek_ms": 1e3 * seek_s(path, seeks=300, seed=0),
+            "trace_open_ms": 1e3 * best_s(lambda: open_trace(path).close(), repeats=20),
+        }
+
+
+def decision_bytes_share(path: Path) -> float:
+    """Bytes read for all decisions, without their pictures, over the trace's size."""
+    with open_trace(path) as opened:
+        for _ in opened.decisions():
+            pass
+        return opened.file.bytes_read / opened.file.size_bytes
+
+
+def figures(path: Path, *, seeks: int, seed: int) -> dict[str, float]:
+    """Every figure of a trace by name, seconds and shares."""
     trace = read_trace(path)
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "again.mcap"
         write_s = best_s(lambda: write(target, trace), repeats=3)
         synced_s = best_s(lambda: write(target, trace, fsync=True), repeats=3)
-    with open_trace(path) as opened:
-        for _ in opened.decisions():
-            pass
-        share = opened.file.bytes_read / opened.file.size_bytes
     return {
         "megabytes": path.stat().st_size / 1e6,
         "exchanges": len(trace.exchanges),
-        "decision_bytes_share": share,
+        "decision_bytes_share": decision_bytes_share(path),
         "decision_seek_ms": 1e3 * seek_s(path, seeks=seeks, seed=seed),
         "open_ms": 1e3 * best_s(lambda: open_trace(path).close(), repeats=20),
         "read_all_ms": 1e3 * best_s(lambda: read_trace(path), repeats=3),
@@ -90,12 +125,12 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0, help="which ones (default 0)")
     parser.add_argument("--json", action="store_true", help="one JSON object instead of a table")
     options = parser.parse_args()
-    figures = measure(options.trace, seeks=options.seeks, seed=options.seed)
+    found = figures(options.trace, seeks=options.seeks, seed=options.seed)
     if options.json:
-        print(json.dumps(figures))
+        print(json.dumps(found))
         return
     table = Table("figure", "value", title=f"{options.trace.name}")
-    for name, value in figures.items():
+    for name, value in found.items():
         table.add_row(name, f"{value:.4g}")
     Console().print(table)
 

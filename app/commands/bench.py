@@ -59,14 +59,14 @@ def _largest_built_in() -> object:
     return max((builtin_scene(scene_id) for scene_id in ids), key=lambda s: len(s.triangles))
 
 
-def _module(name: str) -> Callable[[Path | None], Measured]:
+def _module(name: str, function: str = "measure") -> Callable[[Path | None], Measured]:
     def measure(scenes: Path | None) -> Measured:
         try:
             module = importlib.import_module(f"benchmarks.{name}")
         except ModuleNotFoundError as error:
             message = f"benchmarks.{name} cannot run here: {error}"
             raise MissingExtra(message) from error
-        return module.measure(scenes)
+        return getattr(module, function)(scenes)
 
     return measure
 
@@ -76,11 +76,13 @@ BENCHES: Mapping[str, Bench] = {
     "ring": Bench(("ring_over_casts",), _rendering("ring_over_casts")),
     "pyrender": Bench(("pyrender_over_fan",), _rendering("pyrender_over_fan", needs_file=True)),
     "filament": Bench(("filament_over_fan",), _rendering("filament_over_fan", needs_file=True)),
-    "cycle": Bench(
-        ("cycle_over_render", "trace_over_cycle", "decision_bytes_share"), _module("cycle")
+    "cycle": Bench(("cycle_over_render", "trace_over_cycle"), _module("cycle")),
+    "traces": Bench(
+        ("decision_bytes_share", "decision_seek_ms", "trace_open_ms"), _module("traces")
     ),
     "large": Bench(("view_cost_10m_over_100k",), _rendering("view_cost_10m_over_100k")),
     "workers": Bench(("workers2_over_1",), _module("batch")),
+    "lanes": Bench(("lanes8_over_1",), _module("batch", "measure_lanes")),
     "cases": Bench(("cases_filter_2000_ms", "cases_filter_100000_ms"), _module("cases")),
     "page": Bench(
         (
