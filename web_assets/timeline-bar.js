@@ -195,7 +195,8 @@ class TimelineBar extends HTMLElement {
     if (!target) return;
     group.addEventListener("pointerdown", (event) => {
       event.stopPropagation();
-      send("go", target);
+      if (mark.opens) send("open_flip", mark.opens);
+      else send("go", target);
     });
   }
 
@@ -215,8 +216,8 @@ class TimelineBar extends HTMLElement {
       "g",
       { class: "flag", "data-leg": leg },
       s("line", { x1: 0, x2: 0, y1: CURVE.top, y2: EVENTS }),
-      s("rect", { x: -8, y: 0, width: 34, height: 24 }),
-      s("text", { x: -1, y: CURVE.top + 10 }, `⚑${leg + 1}`),
+      s("rect", { x: -8, y: 14, width: 34, height: 24 }),
+      s("text", { x: -1, y: CURVE.top + 25 }, `⚑${leg + 1}`),
     );
     const put = (at) => group.setAttribute("transform", `translate(${this.x(at)} 0)`);
     put(step);

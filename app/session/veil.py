@@ -7,11 +7,15 @@ in the story can be on no card, curve, map or list.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from app.session.reasked import NOTHING
 from app.session.snapshot import Snapshot
-from app.session.story import story_of
+from app.session.story import Story, story_of
+
+_TRUTH = frozenset(("goal", "reference"))
+"""Layers that tell the goal or the way to it."""
 
 
 def covered(snapshot: Snapshot) -> bool:
@@ -46,7 +50,9 @@ def veiled(snapshot: Snapshot) -> Snapshot:
         pending=pending,
         footer=branch.footer if over else None,
     )
-    shortened = story_of(cut.header, cut.exchanges, pending=pending, footer=cut.footer)
+    shortened = _without_truth(
+        story_of(cut.header, cut.exchanges, pending=pending, footer=cut.footer)
+    )
     reviews = {
         place: said
         for place, said in snapshot.reviews.get(branch.branch_id, {}).items()
@@ -64,10 +70,17 @@ def veiled(snapshot: Snapshot) -> Snapshot:
         parent=None,
         place=None,
         assessed={},
+        view=replace(snapshot.view, layers=snapshot.view.layers - _TRUTH),
         reasked=NOTHING,
         reviews={branch.branch_id: reviews},
         covered=hides,
     )
+
+
+def _without_truth(story: Story) -> Story:
+    """How far the goal is would tell whether the last answers were good."""
+    footsteps = tuple(replace(one, distance_m=math.nan) for one in story.track.footsteps)
+    return replace(story, track=replace(story.track, footsteps=footsteps))
 
 
 def answers_shown(drawn: Snapshot) -> int:

@@ -108,7 +108,7 @@ def _block(snapshot: Snapshot) -> str:
     return m.padded(
         _blind(snapshot),
         m.heading(f"Your verdict on decision {number}"),
-        _verdicts(judged),
+        _verdicts(judged, VERDICTS[-1:] if snapshot.covered else VERDICTS),
         _better(snapshot, judged),
         m.heading("Tags"),
         _tags(snapshot, judged),
@@ -135,10 +135,10 @@ def _blind(snapshot: Snapshot) -> Markup:
     return Markup('{}<div class="c2-buttons">{}</div>').format(m.note(words), m.join(buttons))
 
 
-def _verdicts(judged: Judgement) -> Markup:
+def _verdicts(judged: Judgement, offered: tuple[Value, ...]) -> Markup:
     buttons = m.join(
         m.action(value.capitalize(), c.Verdict(value=value), pressed=judged.verdict == value)
-        for value in VERDICTS
+        for value in offered
     )
     return Markup('<div class="c2-buttons">{}</div>').format(buttons)
 
