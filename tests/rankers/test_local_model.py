@@ -5,20 +5,22 @@ from pathlib import Path
 
 import pytest
 
-torch = pytest.importorskip("torch")
+pytest.importorskip("torch")
 pytest.importorskip("transformers")
 
-from c2nav_engine.contract.outcome import ORDERS_DISAGREE, Abstention, Cardinal, Ordering  # noqa: E402
-from c2nav_engine.contract.question import Form, Orders, Slot  # noqa: E402
-from c2nav_engine.contract.render import render  # noqa: E402
-from c2nav_engine.errors import UsageError  # noqa: E402
-from c2nav_engine.rankers.conformance import check_adapter, check_same_again  # noqa: E402
-from c2nav_engine.rankers.local import Local  # noqa: E402
-from c2nav_engine.rankers.reading import read  # noqa: E402
-from c2nav_engine.rankers.token_trie import TokenTrie  # noqa: E402
-from c2nav_engine.rankers.wrapper import AskingRanker  # noqa: E402
-from tests.helpers.questions import every_question, flat_picture, question  # noqa: E402
-from tests.helpers.tiny_qwen import build_tiny_qwen  # noqa: E402
+import torch
+
+from c2nav_engine.contract.outcome import ORDERS_DISAGREE, Abstention, Cardinal, Ordering
+from c2nav_engine.contract.question import Form, Orders, Slot
+from c2nav_engine.contract.render import render
+from c2nav_engine.errors import UsageError
+from c2nav_engine.rankers.conformance import check_adapter, check_same_again
+from c2nav_engine.rankers.local import Local
+from c2nav_engine.rankers.reading import read
+from c2nav_engine.rankers.token_trie import TokenTrie
+from c2nav_engine.rankers.wrapper import AskingRanker
+from tests.helpers.questions import every_question, flat_picture, question
+from tests.helpers.tiny_qwen import build_tiny_qwen
 
 
 @pytest.fixture(scope="module", autouse=True)
