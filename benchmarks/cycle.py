@@ -55,6 +55,7 @@ class TimedWriter:
         self._writer = TraceWriter(path, header)
         self.write = clock.around(self._writer.write)
         self._finish = clock.around(self._writer.finish)
+        self.attach = self._writer.attach
         self.abandon = self._writer.abandon
 
     def finish(self, footer: Footer) -> str:

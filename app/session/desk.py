@@ -13,6 +13,7 @@ from typing import Any
 
 from app.session.assessing import Assessor, assessor_of
 from app.session.branches import Branch, Origin
+from app.session.consent import Consent
 from app.session.draft import Draft
 from app.session.opened import Choice, Opened, Opening, Run
 from app.session.pictures import Album
@@ -68,7 +69,7 @@ class Desk:
         self.out: set[Errand] = set()
         self.scene: Scene | None = None
         self.sight: Sight | None = None
-        self.allowed = not opened.sends_to
+        self.consent: Consent | None = None
         self.commit_when_answered = False
         self.due_s = 0.0
         self.assessor: Assessor | None = None
@@ -76,6 +77,11 @@ class Desk:
         self._generation = 0
         self._branch_serial = 0
         self.snapshot = self._open(opened.first)
+
+    @property
+    def allowed(self) -> bool:
+        """Whether pictures may go where the ranker is."""
+        return self.consent is not None or not self.opened.sends_to
 
     @property
     def generation(self) -> int:

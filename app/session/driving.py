@@ -69,6 +69,8 @@ def ask(desk: Desk, branch_id: str) -> None:
     if not desk.allowed:
         desk.change(consent_to=desk.opened.sends_to)
         return
+    if desk.consent is not None:
+        desk.consent.keep(run)
     number = desk.stories[branch_id].decisions[-1].number
     desk.asked.add(branch_id)
     desk.change(

@@ -9,6 +9,7 @@ from typing import Any
 from app.session import asking, driving, judging, moving, placing, reviewing
 from app.session import commands as c
 from app.session.branches import Origin
+from app.session.consent import Consent
 from app.session.desk import Desk
 from app.session.draft import Draft, arranged, none_of_these, press, take_back, tie
 from app.session.opened import Choice
@@ -109,7 +110,8 @@ def _commit(desk: Desk, command: c.Commit) -> None:
 
 
 def _consent(desk: Desk, command: c.Consent) -> None:
-    desk.allowed = command.allow
+    yes = Consent(desk.opened.sends_to, desk.snapshot.who, desk.hands.clock())
+    desk.consent = yes if command.allow else None
     desk.change(consent_to="")
     if command.allow:
         driving.ask(desk, desk.snapshot.branch.branch_id)

@@ -57,6 +57,10 @@ class Run(Protocol):
         """Commit the proposal, or a person's answer in its place."""
         ...
 
+    def keep(self, name: str, data: bytes) -> None:
+        """Attach a file to the trace, once by that name."""
+        ...
+
     def close(self) -> None:
         """Let go of what it holds."""
         ...

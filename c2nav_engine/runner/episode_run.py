@@ -35,6 +35,10 @@ class Recorder(Protocol):
         """The episode is over; returns the trace's sha256."""
         ...
 
+    def attach(self, name: str, data: bytes) -> None:
+        """Keep a file beside the exchanges."""
+        ...
+
     def abandon(self) -> None:
         """Leave what is written, unfinished and recoverable."""
         ...
@@ -98,6 +102,7 @@ class EpisodeRun:
         self._clock = clock
         self._proposal: Ranked | None = None
         self._proposal_s = 0.0
+        self._kept: set[str] = set()
         self._steps = 0
         self._decisions = 0
         self.pending: Request | None = next(parts.loop)
@@ -188,6 +193,12 @@ class EpisodeRun:
         if self._parts.recorder is not None:
             self.trace_sha256 = self._parts.recorder.finish(self.footer)
         return self.footer
+
+    def keep(self, name: str, data: bytes) -> None:
+        """Attach a file to the trace, once by that name; without a recorder there is no trace."""
+        if self._parts.recorder is not None and self.footer is None and name not in self._kept:
+            self._kept.add(name)
+            self._parts.recorder.attach(name, data)
 
     def close(self) -> None:
         """Leave an unfinished episode: the trace stays recoverable."""

@@ -38,8 +38,7 @@ class TraceWriter:
         self._next = 0
         self._file = TraceFileWriter(path, header_facts(header), fsync=fsync)
         for name, data in header_files(header).items():
-            kind = "application/json" if name.endswith(".json") else "text/plain"
-            self._file.attach(name, data, media_type=kind)
+            self.attach(name, data)
         self._file.attach(LAYOUT_FILE, foxglove_layout(), media_type="application/json")
 
     def write(self, exchange: Exchange) -> None:
@@ -56,6 +55,11 @@ class TraceWriter:
         if exchange.truth is not None:
             draft.add("/eval", _evaluation(exchange, exchange.truth, draft))
         self._file.append([*draft.messages, *self._views.of(exchange)])
+
+    def attach(self, name: str, data: bytes) -> None:
+        """Keep a file beside the exchanges; its ending says what it is."""
+        kind = "application/json" if name.endswith(".json") else "text/plain"
+        self._file.attach(name, data, media_type=kind)
 
     def finish(self, footer: Footer) -> str:
         """Complete the trace, give it its name and return its SHA-256."""

@@ -328,6 +328,7 @@ class PlayRun:
         self._decisions = 0
         self._proposal: Ranked | None = None
         self.closed = False
+        self.kept: dict[str, bytes] = {}
 
     def propose(self) -> Ranked:
         assert isinstance(self.pending, Ask)
@@ -359,6 +360,9 @@ class PlayRun:
             ranked = self.propose()
         outcome = override.outcome if override else ranked.outcome if ranked else None
         return self._finish(request, outcome, None, ranked=ranked, override=override)
+
+    def keep(self, name: str, data: bytes) -> None:
+        self.kept.setdefault(name, data)
 
     def close(self) -> None:
         self.closed = True
