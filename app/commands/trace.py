@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -14,6 +15,9 @@ from app.commands.output import print_json
 from c2nav_engine.runner.recorded import open_trace
 from c2nav_engine.traces.check import check as faults_of
 from c2nav_engine.traces.recover import recover as salvage
+
+MOST_FAULTS = 20
+"""Faults of one trace that are told to a person."""
 
 TracesArg = Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="TRACE…")]
 
@@ -38,7 +42,8 @@ def info(traces: TracesArg, json: JsonOpt = False) -> int:
     console = Console(highlight=False)
     for facts in found:
         for name, value in facts.items():
-            console.print(f"{name}: {value}", markup=False)
+            if value != "":
+                console.print(f"{name:16} {value}", markup=False, soft_wrap=True)
         console.print()
     return 0
 
@@ -51,12 +56,17 @@ def check(traces: TracesArg, json: JsonOpt = False) -> int:
     else:
         console = Console(highlight=False)
         for path, faults in found.items():
-            console.print(
-                f"{path}: {'holds' if not faults else f'{len(faults)} faults'}", markup=False
-            )
-            for fault in faults:
-                console.print(f"  {fault}", markup=False)
+            verdict = "holds" if not faults else f"{len(faults)} faults"
+            console.print(f"{path}: {verdict}", markup=False, soft_wrap=True)
+            for line in first_of(faults):
+                console.print(f"  {line}", markup=False, soft_wrap=True)
     return 1 if any(found.values()) else 0
+
+
+def first_of(faults: Sequence[str]) -> list[str]:
+    """The first faults, and how many more there are; --json has all."""
+    more = len(faults) - MOST_FAULTS
+    return [*faults[:MOST_FAULTS], *([f"… and {more} more"] if more > 0 else [])]
 
 
 def recover(
@@ -69,7 +79,7 @@ def recover(
     if json:
         print_json({"trace": str(out), "saved": str(saved)})
     else:
-        Console(highlight=False).print(f"{out}: {saved}", markup=False)
+        Console(highlight=False).print(f"{out}: {saved}", markup=False, soft_wrap=True)
     return 0
 
 

@@ -77,13 +77,13 @@ def replay(
         try:
             request = loop.send(exchange.response)
         except StopIteration as finished:
-            return _end_difference(exchange, decision, footer, str(finished.value))
+            if exchange is not exchanges[-1]:
+                recorded = f"exchange {exchange.index + 1}"
+                ending = str(finished.value)
+                return Divergence(exchange.index, decision, "end", "next", recorded, ending)
+            return _end_difference(exchange.index, decision, footer, str(finished.value))
     loop.close()
-    if footer is None or footer.outcome in {EpisodeOutcome.ERROR, EpisodeOutcome.INTERRUPTED}:
-        return None
-    return Divergence(
-        len(exchanges), decision, "end", "outcome", footer.outcome.value, "the core goes on"
-    )
+    return _end_difference(len(exchanges), decision, footer, "the core goes on")
 
 
 def _shell_difference(shell: Shell | None, exchange: Exchange) -> tuple[str, str, str] | None:
@@ -99,12 +99,14 @@ def _shell_difference(shell: Shell | None, exchange: Exchange) -> tuple[str, str
 
 
 def _end_difference(
-    exchange: Exchange, decision: int | None, footer: Footer | None, ending: str
+    exchange: int, decision: int | None, footer: Footer | None, ending: str
 ) -> Divergence | None:
-    if footer is not None and footer.outcome.value == ending:
+    """Whether the core ended as recorded; a record that was cut off says nothing of the end."""
+    if footer is None or footer.outcome in {EpisodeOutcome.ERROR, EpisodeOutcome.INTERRUPTED}:
         return None
-    recorded = "an unfinished trace" if footer is None else footer.outcome.value
-    return Divergence(exchange.index, decision, "end", "outcome", recorded, ending)
+    if footer.outcome.value == ending:
+        return None
+    return Divergence(exchange, decision, "end", "outcome", footer.outcome.value, ending)
 
 
 def difference(recorded: object, replayed: object, path: str = "") -> tuple[str, str, str] | None:

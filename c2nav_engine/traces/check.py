@@ -13,7 +13,8 @@ from mcap.opcode import Opcode
 from mcap.records import DataEnd
 
 from c2nav_engine.errors import TraceError
-from c2nav_engine.traces.pb import common_pb2, control_pb2, decision_pb2, evaluation_pb2, route_pb2
+from c2nav_engine.traces.moments import parsed, picture_table
+from c2nav_engine.traces.pb import control_pb2, decision_pb2, evaluation_pb2, route_pb2
 from c2nav_engine.traces.reader import TraceFile
 from c2nav_engine.traces.records import (
     Record,
@@ -23,7 +24,13 @@ from c2nav_engine.traces.records import (
     parse,
     walk,
 )
-from c2nav_engine.traces.topics import EXCHANGE_TOPICS, IMAGE_TOPICS, TOPICS, log_time_ns
+from c2nav_engine.traces.topics import (
+    EXCHANGE_TOPICS,
+    IMAGE_TOPICS,
+    TOPICS,
+    log_time_ns,
+    step_and_exchange,
+)
 
 Facts = (
     control_pb2.Control
@@ -108,7 +115,6 @@ def _open(record: Record) -> None:
 def _content_faults(trace: TraceFile) -> Iterator[Fault]:
     exchanges: list[int] = []
     decisions: list[int] = []
-    references: list[common_pb2.Picture] = []
     for stored in trace.messages(*EXCHANGE_TOPICS, "/eval"):
         message = _facts_message(stored.topic, stored.data)
         if stored.log_time_ns != log_time_ns(message.step, message.exchange):
@@ -118,14 +124,11 @@ def _content_faults(trace: TraceFile) -> Iterator[Fault]:
             exchanges.append(message.exchange)
         if isinstance(message, decision_pb2.Decision):
             decisions.append(message.decision)
-        if not isinstance(message, route_pb2.Ladder):
-            references.extend(message.pictures)
     yield from _numbering(exchanges, "exchange")
     yield from _numbering(decisions, "decision")
     if not trace.complete and trace.facts.get("recovered") != "yes":
         yield Fault("metadata", "a complete trace", "complete: no")
-    if trace.facts.get("redacted") != "yes":
-        yield from _picture_faults(trace, references)
+    yield from missing_pictures(trace)
 
 
 def _facts_message(topic: str, data: bytes) -> Facts:
@@ -141,14 +144,28 @@ def _numbering(numbers: Sequence[int], what: str) -> Iterator[Fault]:
             return
 
 
-def _picture_faults(trace: TraceFile, references: Sequence[common_pb2.Picture]) -> Iterator[Fault]:
+def missing_pictures(trace: TraceFile) -> Iterator[Fault]:
+    """Pictures that an exchange names and the trace does not hold; a redacted one names none."""
+    if trace.facts.get("redacted") == "yes":
+        return
     held = {
         (stored.topic, stored.log_time_ns, sha256(_image(stored.data)).hexdigest())
         for stored in trace.messages(*IMAGE_TOPICS)
     }
-    for each in references:
-        if each.topic and (each.topic, each.log_time_ns, each.sha256) not in held:
-            yield Fault(f"{each.topic} at {each.log_time_ns} ns", f"picture {each.sha256}", "none")
+    named = (
+        picture
+        for stored in trace.messages(*EXCHANGE_TOPICS, "/eval")
+        for picture in picture_table(parsed(stored))
+        if picture.topic
+    )
+    # Many exchanges name the same picture; one that is missing is told once.
+    for topic, time_ns, digest in dict.fromkeys(
+        (each.topic, each.log_time_ns, each.sha256) for each in named
+    ):
+        if (topic, time_ns, digest) not in held:
+            step, exchange = step_and_exchange(time_ns)
+            where = f"{topic} at step {step}, exchange {exchange}"
+            yield Fault(where, f"picture {digest[:12]}", "none")
 
 
 def _image(data: bytes) -> bytes:

@@ -13,7 +13,7 @@ from google.protobuf.message import Message
 
 from c2nav_engine.traces.reader import TraceFile
 from c2nav_engine.traces.records import Stored
-from c2nav_engine.traces.topics import EPOCH_NS, EXCHANGE_NS, STEP_NS, TOPICS
+from c2nav_engine.traces.topics import TOPICS, step_and_exchange
 
 WALL = "wall"
 
@@ -62,8 +62,7 @@ def _stored_difference(a: Stored | None, b: Stored | None) -> Difference | None:
     here = a or b
     if here is None or (a is not None and b is not None and _same_bytes(a, b)):
         return None
-    step, rest = divmod(here.log_time_ns - EPOCH_NS, STEP_NS)
-    exchange = rest // EXCHANGE_NS
+    step, exchange = step_and_exchange(here.log_time_ns)
     if a is None or b is None or (a.topic, a.sequence) != (b.topic, b.sequence):
         return Difference(here.topic, here.sequence, step, exchange, "", _name(a), _name(b))
     if a.log_time_ns != b.log_time_ns:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from c2nav_engine.errors import TraceError, UsageError
+from c2nav_engine.traces.check import missing_pictures
+from c2nav_engine.traces.reader import TraceFile
 from c2nav_engine.traces.records import MAGIC
 from c2nav_engine.traces.salvage import Salvaged, salvage
 from c2nav_engine.traces.settle import settle
@@ -23,6 +25,7 @@ class Recovered:
         exchanges: Of these, exchanges of the loop.
         damaged: Records left out because their CRC did not hold.
         lost_bytes: Bytes after the last whole record.
+        lost_pictures: Pictures that a kept exchange names and that are not there.
         complete: Whether nothing was missing.
     """
 
@@ -32,6 +35,7 @@ class Recovered:
     exchanges: int
     damaged: int
     lost_bytes: int
+    lost_pictures: int
     complete: bool
 
     def __str__(self) -> str:
@@ -40,7 +44,8 @@ class Recovered:
         if self.complete:
             return f"{kept}, nothing missing"
         return (
-            f"{kept}; left out: {self.damaged} damaged records, {self.lost_bytes} bytes at the end"
+            f"{kept}; left out: {self.damaged} damaged records, {self.lost_bytes} bytes at the "
+            f"end; {self.lost_pictures} pictures are missing"
         )
 
 
@@ -67,6 +72,8 @@ def recover(source: Path, out: Path) -> Recovered:
     facts = _facts(found, source)
     metadata = {**found.metadata, METADATA: facts}
     digest = settle(found.messages, out, attachments=found.attachments, metadata=metadata)
+    with TraceFile(out) as written:
+        lost_pictures = len(list(missing_pictures(written)))
     return Recovered(
         path=out,
         sha256=digest,
@@ -74,6 +81,7 @@ def recover(source: Path, out: Path) -> Recovered:
         exchanges=sum(stored.topic in EXCHANGE_TOPICS for stored in found.messages),
         damaged=found.damaged,
         lost_bytes=0 if found.finished else len(data) - found.end,
+        lost_pictures=lost_pictures,
         complete=facts["complete"] == "yes",
     )
 

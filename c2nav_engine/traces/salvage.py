@@ -21,7 +21,7 @@ from c2nav_engine.traces.records import (
     parse,
     walk,
 )
-from c2nav_engine.traces.topics import EPOCH_NS, EXCHANGE_TOPICS, STEP_NS
+from c2nav_engine.traces.topics import EPOCH_NS, EXCHANGE_TOPICS, step_and_exchange
 
 
 @dataclass(slots=True)
@@ -67,7 +67,7 @@ def unfinished_words(path: Path) -> str:
     decisions = counts["/decision"]
     others = sum(counts[topic] for topic in EXCHANGE_TOPICS) - decisions
     last_ns = max((stored.log_time_ns for stored in found.messages), default=EPOCH_NS)
-    step = (last_ns - EPOCH_NS) // STEP_NS
+    step, _ = step_and_exchange(last_ns)
     target = path.name.removesuffix(".part").removesuffix(".mcap") + ".recovered.mcap"
     return (
         f"unfinished trace: {path} ends without its closing record; {decisions} decisions and "

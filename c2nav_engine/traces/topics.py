@@ -114,6 +114,12 @@ def log_time_ns(step: int, exchange: int) -> int:
     return EPOCH_NS + step * STEP_NS + exchange * EXCHANGE_NS
 
 
+def step_and_exchange(time_ns: int) -> tuple[int, int]:
+    """The step and the exchange that a log time stands for."""
+    step, rest = divmod(time_ns - EPOCH_NS, STEP_NS)
+    return step, rest // EXCHANGE_NS
+
+
 @cache
 def schema_bytes(message: type[Message]) -> bytes:
     """The self-contained schema of a message type, as MCAP files carry it."""

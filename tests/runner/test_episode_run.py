@@ -112,6 +112,21 @@ def test_a_changed_answer_is_named_as_the_first_divergence(recorded):
     assert found.recorded != found.replayed
 
 
+def test_an_end_is_compared_unless_the_record_was_cut_off(recorded):
+    _, path = recorded
+    trace = read_trace(path)
+    cut = replace(trace.footer, outcome=EpisodeOutcome.INTERRUPTED)
+    for count in (len(trace.exchanges), len(trace.exchanges) - 1, 3):
+        assert replay(trace.header, trace.exchanges[:count], cut) is None
+    early = replay(trace.header, trace.exchanges[:-1], trace.footer)
+    assert early is not None and (early.part, early.replayed) == ("end", "the core goes on")
+    other = replay(trace.header, trace.exchanges, replace(cut, outcome=EpisodeOutcome.STALLED))
+    assert other is not None and (other.recorded, other.replayed) == ("stalled", "step_limit")
+    longer = (*trace.exchanges, replace(trace.exchanges[-1], index=len(trace.exchanges)))
+    past = replay(trace.header, longer, trace.footer)
+    assert past is not None and past.recorded == f"exchange {len(trace.exchanges)}"
+
+
 def test_a_changed_motion_is_noticed_with_the_scene_alone(recorded):
     _, path = recorded
     trace = read_trace(path)

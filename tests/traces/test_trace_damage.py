@@ -139,16 +139,18 @@ def test_every_beginning_of_a_finished_trace_recovers(tmp_path: Path) -> None:
     data = (tmp_path / "whole.mcap").read_bytes()
     cut, out = tmp_path / "cut.mcap", tmp_path / "out.mcap"
     kept = 0
+    lost: list[int] = []
     for length in range(20_000, len(data) - 8, 1999):
         cut.write_bytes(data[:length])
-        recover(cut, out)
+        lost.append(recover(cut, out).lost_pictures)
         found = read_trace(out)
         kept, before = len(found.exchanges), kept
         assert kept >= before
         if not found.complete:  # else only the index was missing
             assert_beginning(found, episode, at_least=before)
-    # Words lie before pictures: long before the end, every exchange is there.
+    # Words lie before pictures: long before the end, every exchange is there, without its pictures.
     assert kept == len(episode.exchanges)
+    assert max(lost) > 0 and lost[-1] == 0
 
 
 def test_a_damaged_chunk_costs_only_itself(tmp_path: Path) -> None:
@@ -161,6 +163,7 @@ def test_a_damaged_chunk_costs_only_itself(tmp_path: Path) -> None:
     assert found.damaged == 1
     assert 0 < whole.messages - found.messages < 20
     assert not found.complete and whole.complete
+    assert whole.lost_pictures == 0
 
 
 def kill_and_recover(folder: Path, *, seed: int) -> None:
