@@ -6,6 +6,7 @@ import "./rank-strip.js";
 import "./timeline-bar.js";
 import "./image-pair.js";
 import "./wait-card.js";
+import { hovering } from "./hover.js";
 import { keys } from "./keys.js";
 import { restore, remember } from "./address.js";
 
@@ -100,6 +101,7 @@ document.addEventListener("click", async (event) => {
   }
 });
 
+document.addEventListener("pointermove", hovering, { passive: true });
 document.addEventListener("keydown", keys, true);
 document.addEventListener(
   "keyup",

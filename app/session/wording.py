@@ -107,7 +107,7 @@ def motion_words(steps: Sequence[Step], turn_rad: float) -> str:
 
 def degrees(angle_rad: float) -> str:
     """Radians as whole degrees."""
-    return f"{round(math.degrees(angle_rad))}°"
+    return f"{round(math.degrees(angle_rad))}°".replace("-", "−")
 
 
 def plural(count: int, noun: str) -> str:

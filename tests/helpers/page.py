@@ -39,6 +39,9 @@ FLAGS = [
 
 PATIENCE_MS = 60_000
 
+MOST_BYTES = 250_000
+"""Of one picture that is kept."""
+
 
 @contextmanager
 def inspector(opened: Opened) -> Generator[tuple[str, Session]]:
@@ -175,5 +178,8 @@ def picture(
     seen.page.wait_for_timeout(settle_ms)
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.jpg"
-    seen.page.screenshot(path=path, type="jpeg", quality=72)
+    for quality in (76, 68, 60, 50, 40):
+        seen.page.screenshot(path=path, type="jpeg", quality=quality)
+        if path.stat().st_size < MOST_BYTES:
+            break
     return path

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import viser
 
 from app.inspector.panels.protocol import Dispatch
-from app.session.commands import Command
+from app.session.commands import Command, Go
 
 NO_OPTIONS: tuple[str, ...] = ("",)
 
@@ -40,6 +40,29 @@ class Picker:
         visible = len(labels) >= least
         if self._handle.visible != visible:
             self._handle.visible = visible
+
+
+class Stepper:
+    """A slider over low-level steps, for hands that do without the timeline: arrows move it."""
+
+    def __init__(self, gui: viser.GuiApi, dispatch: Dispatch) -> None:
+        """Place it."""
+        self._handle = gui.add_slider(
+            "step", min=0, max=1, step=1, initial_value=0, hint="← → one step when it has the focus"
+        )
+
+        @self._handle.on_update
+        def _(event: viser.GuiEvent[viser.GuiSliderHandle[int]]) -> None:
+            # Our own assignments echo back without a client.
+            if event.client is not None:
+                dispatch(Go(step=event.target.value))
+
+    def show(self, step: int, last: int) -> None:
+        """Stand at a step of so many."""
+        if self._handle.max != max(last, 1):
+            self._handle.max = max(last, 1)
+        if self._handle.value != step:
+            self._handle.value = step
 
 
 def buttons(

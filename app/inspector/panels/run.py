@@ -7,7 +7,7 @@ from markupsafe import Markup
 
 from app.inspector import markup as m
 from app.inspector.panels import entries
-from app.inspector.panels.controls import Picker
+from app.inspector.panels.controls import Picker, Stepper
 from app.inspector.panels.protocol import Dispatch, Html, Update
 from app.session import commands as c
 from app.session.branches import cost_of
@@ -21,6 +21,7 @@ def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:
     entry = Picker(gui, "episode", lambda chosen: dispatch(c.Open(entry=chosen)))
     variant = Picker(gui, "variant", lambda chosen: dispatch(c.Open(variant=chosen)))
     ranker = Picker(gui, "ranker", lambda chosen: dispatch(c.Open(ranker=chosen)))
+    stepper = Stepper(gui, dispatch)
     block = Html(gui)
     choose = entries.build(gui, dispatch)
 
@@ -29,6 +30,7 @@ def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:
         entry.show({e.entry_id: e.label for e in chooser.entries}, chooser.choice.entry_id)
         variant.show({v: v for v in chooser.variants}, chooser.choice.variant)
         ranker.show({r: r for r in chooser.rankers}, chooser.choice.ranker)
+        stepper.show(snapshot.here.step, snapshot.story.track.last_step)
         block.show(_block(snapshot))
         choose(snapshot)
 

@@ -108,8 +108,13 @@ def _point(array: np.ndarray) -> Point:
 
 def _place(client: viser.ClientHandle, snapshot: Snapshot, mode: str) -> None:
     pose = snapshot.story.track.footsteps[snapshot.here.step].pose
-    height_m = snapshot.story.header.profile.camera_height_m
+    profile = snapshot.story.header.profile
+    height_m = profile.camera_height_m
+    client.camera.fov = _FOV
     if mode == "ego":
+        # The page is wider than the robot's picture: as tall an angle shows all that it saw.
+        rgb = profile.rgb
+        client.camera.fov = frames.vertical_fov(rgb.hfov_rad, rgb.width_px / rgb.height_px)
         eye = frames.raised(pose.position_m, height_m)
         _look(client, eye, frames.raised(pose.ahead(1.0), height_m))
     elif mode == "top":

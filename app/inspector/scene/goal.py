@@ -9,6 +9,9 @@ from app.inspector.scene.colours import GREEN, GREY
 from app.inspector.scene.layer import Group
 from app.session.snapshot import Snapshot
 
+_DISC_M = 0.07
+"""Of the disc above the goal: floors of models lie a little above the surface walked on."""
+
 
 class Goal:
     """A green disc of the success radius; a dashed reference path."""
@@ -34,7 +37,8 @@ class Goal:
         if episode.goal_m is None:
             return []
         vertices, faces = frames.disc(episode.goal_radius_m)
-        ring = frames.ring_points(episode.goal_m, episode.goal_radius_m)
+        centre_m = frames.raised(episode.goal_m, _DISC_M - frames.LIFT_M)
+        ring = frames.ring_points(centre_m, episode.goal_radius_m)
         return [
             self._scene.add_mesh_simple(
                 "/goal/disc",
@@ -43,7 +47,7 @@ class Goal:
                 color=GREEN,
                 opacity=0.25,
                 side="double",
-                position=frames.raised(episode.goal_m, 0.03),
+                position=frames.raised(episode.goal_m, _DISC_M),
                 cast_shadow=False,
                 receive_shadow=False,
             ),

@@ -1,0 +1,58 @@
+"""The same thing by pointer, by keyboard and by native control."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.session.worker import Session
+from tests.helpers.page import Visit
+
+pytestmark = pytest.mark.browser
+
+Opened = tuple[Visit, Session]
+
+_MIDDLE = """
+key => {
+  const { nodeRefFromName, camera } = window.__viserMutable;
+  const ref = nodeRefFromName["/fan/" + key];
+  let image = null;
+  (ref.current ?? ref).traverse((one) => {
+    if (one.geometry?.type === "PlaneGeometry") image = one;
+  });
+  const at = camera.position.clone().setFromMatrixPosition(image.matrixWorld).project(camera);
+  const box = document.querySelector("canvas[data-engine]").getBoundingClientRect();
+  return [box.left + ((at.x + 1) / 2) * box.width, box.top + ((1 - at.y) / 2) * box.height];
+}
+"""
+"""Where the middle of a frustum's picture stands on the page, by three.js itself."""
+
+
+def test_a_frustum_lights_its_card_and_the_card_its_frustum(live: Opened):
+    seen, session = live
+    seen.until("s.decision.source === 'proposal'")
+    for key in ("left", "front"):
+        seen.until_node(f"/fan/{key}")
+        x, y = seen.page.evaluate(_MIDDLE, key)
+        seen.page.mouse.move(x, y)
+        seen.until(f"s.view.hovered === '{key}'")
+        assert "lit" in (seen.card(key).get_attribute("class") or "")
+    seen.page.locator("route-strip").hover()
+    seen.until("s.view.hovered === ''")
+    seen.card("left").hover()
+    seen.until("s.view.hovered === 'left'")
+    assert session.snapshot.view.hovered == "left"
+    assert not seen.errors
+
+
+def test_the_native_slider_steps_with_the_keyboard(recorded: Opened):
+    seen, _ = recorded
+    slider = seen.page.get_by_role("slider").first
+    slider.focus()
+    here = seen.state()["place"]["step"]
+    seen.page.keyboard.press("ArrowRight")
+    seen.until(f"s.place.step === {here + 1}")
+    seen.page.keyboard.press("End")
+    seen.until("s.place.step === s.timeline.last")
+    seen.page.keyboard.press("Home")
+    seen.until("s.place.step === 0")
+    assert not seen.errors
