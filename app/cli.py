@@ -18,6 +18,7 @@ Command = Callable[..., int]
 
 COMMANDS = (
     "agree",
+    "cases",
     "doctor",
     "episodes",
     "inspect",

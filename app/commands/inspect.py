@@ -1,4 +1,4 @@
-"""`c2nav inspect`: the inspector on a source, on traces, or on a run folder."""
+"""`c2nav inspect`: the inspector on a source, on traces, or on a folder of one or more runs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ import tyro
 from rich.console import Console
 
 from app.commands.options import RankerOptions, ScenesOpt, key_values
+from app.commands.run_folders import folder_of_runs, pages_of, traces_under, with_later_traces
 from app.commands.sources import opened_source, opened_traces, trace_files
+from app.gateway.runs import serve_runs
 from app.gateway.serving import Address, serve, tunnel_line
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.rankers import DEFAULT_RANKER
@@ -20,7 +22,7 @@ def inspect(
     what: Annotated[
         tuple[str, ...],
         tyro.conf.Positional,
-        tyro.conf.arg(metavar="SOURCE|TRACE…|RUN", help="`builtin` by default."),
+        tyro.conf.arg(metavar="SOURCE|TRACE…|RUN|RUNS", help="`builtin` by default."),
     ] = ("builtin",),
     scenes: ScenesOpt = None,
     with_: Annotated[
@@ -40,9 +42,10 @@ def inspect(
     no_browser: Annotated[bool, tyro.conf.arg(help="Do not open a browser.")] = False,
 ) -> int:
     """Open the inspector; it stands at the first pending decision."""
-    traces = trace_files(what)
+    root = folder_of_runs(what)
+    traces = trace_files(what) if root is None else traces_under(root)
     setting = Setting(
-        source="builtin" if traces else what[0],
+        source="builtin" if traces or root else what[0],
         scenes=str(scenes) if scenes else "",
         profile=profile,
         ranker=ranker,
@@ -52,9 +55,26 @@ def inspect(
     if with_ and not traces:
         message = f"expected traces or a run folder beside --with, came {' '.join(what)}"
         raise UsageError(message)
+    if root is not None and not traces:
+        # Nothing can be stepped yet, but how far the run is can be told.
+        serve_runs(pages_of(root, scenes), host=host, port=port, ready=_tell_pages)
+        return 0
     opened = opened_traces(traces, setting, beside=with_) if traces else opened_source(setting)
-    serve(opened, host=host, port=port, no_browser=no_browser, ready=_tell)
+    runs = None
+    if root is not None:
+        opened, runs = with_later_traces(opened, root, setting), pages_of(root, scenes)
+    ready = _tell if runs is None else _tell_run
+    serve(opened, host=host, port=port, no_browser=no_browser, ready=ready, runs=runs)
     return 0
+
+
+def _tell_pages(url: str) -> None:
+    Console(highlight=False).print(f"run at {url}run; no trace is finished yet", markup=False)
+
+
+def _tell_run(address: Address) -> None:
+    Console(highlight=False).print(f"run at {address.url}run", markup=False)
+    _tell(address)
 
 
 def _tell(address: Address) -> None:

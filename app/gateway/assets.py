@@ -6,6 +6,9 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
+from fastapi import FastAPI, Request
+from fastapi.responses import Response
+
 from c2nav_engine.errors import InternalError
 
 _TYPES = {
@@ -32,6 +35,20 @@ def assets() -> dict[str, Asset]:
         for path in sorted(folder.rglob("*"))
         if path.suffix in _TYPES
     }
+
+
+def serve_assets(app: FastAPI, files: dict[str, Asset]) -> None:
+    """Add the route of these files."""
+
+    @app.get("/web_assets/{name:path}", include_in_schema=False)
+    def asset(name: str, request: Request) -> Response:
+        found = files.get(name)
+        if found is None:
+            return Response(status_code=404)
+        headers = {"ETag": found.etag, "Cache-Control": "no-cache"}
+        if request.headers.get("if-none-match") == found.etag:
+            return Response(status_code=304, headers=headers)
+        return Response(found.body, media_type=found.media_type, headers=headers)
 
 
 def _folder() -> Path:

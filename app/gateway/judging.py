@@ -8,18 +8,18 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
-import uvicorn
 from fastapi import APIRouter, FastAPI, Header
 from fastapi.responses import HTMLResponse, JSONResponse, Response
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.gateway.alone import listen, serve_alone
 from app.gateway.assets import assets
 from app.gateway.doors import Doors
 from app.pages.judge import judge_page, question_json
 from app.reviews.desk import Desk, Taken
 from app.reviews.study import Person, read_study, study_names
 from app.reviews.submissions import Submission
-from c2nav_engine.errors import InputError, UsageError
+from c2nav_engine.errors import InputError
 
 _ASSETS = ("judge.js", "judge.css")
 
@@ -143,15 +143,5 @@ def serve_judging(
     desks: Sequence[Desk], *, host: str, port: int, ready: Callable[[str], None]
 ) -> None:
     """Serve the judging page until interrupted; raises `UsageError` when the port is taken."""
-    try:
-        family = socket.AF_INET6 if ":" in host else socket.AF_INET
-        listener = socket.create_server((host, port), family=family)
-    except OSError as error:
-        message = f"expected a free port, came {host}:{port} ({error}); choose another with --port"
-        raise UsageError(message) from error
     app = judging_application(desks, names=(host, socket.gethostname(), socket.getfqdn()))
-    config = uvicorn.Config(
-        app, ws="none", log_level="warning", access_log=False, server_header=False
-    )
-    ready(f"http://{host}:{listener.getsockname()[1]}/judge")
-    uvicorn.Server(config).run(sockets=[listener])
+    serve_alone(app, listen(host, port), ready=lambda url: ready(f"{url}judge"))

@@ -12,28 +12,24 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass
 
 import uvicorn
-from fastapi import FastAPI, Request
-from fastapi.responses import Response
+from fastapi import FastAPI
 
+from app.gateway.alone import listen, names_of
 from app.gateway.api import api
-from app.gateway.assets import Asset, assets
+from app.gateway.assets import assets, serve_assets
 from app.gateway.doors import Doors
 from app.gateway.feed import Feed
 from app.gateway.judging import mount_judging
+from app.gateway.runs import RunPages, mount_runs
 from app.gateway.shell_page import ShellPage
 from app.inspector.shell import Shell
 from app.session.opened import Opened
 from app.session.worker import Session
-from c2nav_engine.errors import UsageError
 
 log = logging.getLogger(__name__)
 
 _NO_LIMIT = 1 << 40
 """Bytes of one websocket frame: a scene arrives as one."""
-
-
-_WAITING = 64
-"""Connections that may wait while the server starts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +73,7 @@ def application(session: Session, shell: Shell, *, names: tuple[str, ...] = ()) 
     app.state.feed = feed
     app.include_router(api(session, feed))
     app.include_router(page.router())
-    _serve_assets(app, assets())
+    serve_assets(app, assets())
     app.add_middleware(Doors, names=names)
     return app
 
@@ -93,18 +89,6 @@ class Server(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-def _serve_assets(app: FastAPI, files: dict[str, Asset]) -> None:
-    @app.get("/web_assets/{name:path}", include_in_schema=False)
-    def asset(name: str, request: Request) -> Response:
-        found = files.get(name)
-        if found is None:
-            return Response(status_code=404)
-        headers = {"ETag": found.etag, "Cache-Control": "no-cache"}
-        if request.headers.get("if-none-match") == found.etag:
-            return Response(status_code=304, headers=headers)
-        return Response(found.body, media_type=found.media_type, headers=headers)
-
-
 def serve(
     opened: Opened,
     *,
@@ -112,6 +96,7 @@ def serve(
     port: int = 8080,
     no_browser: bool = False,
     ready: Callable[[Address], None] | None = None,
+    runs: RunPages | None = None,
 ) -> None:
     """Show what was opened until interrupted.
 
@@ -121,18 +106,22 @@ def serve(
         port: Port to bind; 0 takes a free one.
         no_browser: Do not open a browser.
         ready: Called once with the address, before the first request is served.
+        runs: Pages about the runs of a folder, beside the inspector and opened first.
 
     Raises:
         C2NavError: When the source's first entry cannot be opened, or the port is taken.
     """
-    listener = _listen(host, port)
+    listener = listen(host, port)
     address = Address(host, listener.getsockname()[1])
     session = Session(opened)
     shell = Shell(session)
     session.start()
     try:
-        app = application(session, shell, names=_names(host))
+        app = application(session, shell, names=names_of(host))
         mount_judging(app, [entry.entry_id for entry in opened.entries])
+        if runs is not None:
+            mount_runs(app, runs)
+            runs.library.start()
         config = uvicorn.Config(
             app,
             ws="websockets-sansio",
@@ -146,33 +135,14 @@ def serve(
         if ready is not None:
             ready(address)
         if not no_browser and _has_display():
-            threading.Timer(0.5, webbrowser.open, (address.url,)).start()
+            first = f"{address.url}run" if runs is not None else address.url
+            threading.Timer(0.5, webbrowser.open, (first,)).start()
         Server(config).run(sockets=[listener])
     finally:
         session.close()
         shell.close()
-
-
-def _listen(host: str, port: int) -> socket.socket:
-    family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    listener = socket.socket(family)
-    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    try:
-        listener.bind((host, port))
-    except OSError as error:
-        listener.close()
-        message = f"expected a free port, came {host}:{port} ({error}); choose another with --port"
-        raise UsageError(message) from error
-    # Whoever comes between the printed address and the first answer waits, and is not refused.
-    listener.listen(_WAITING)
-    return listener
-
-
-def _names(host: str) -> tuple[str, ...]:
-    """Names under which a gateway that is bound beyond loopback may be reached."""
-    if host in ("127.0.0.1", "localhost", "::1"):
-        return ()
-    return (host, socket.gethostname(), socket.getfqdn())
+        if runs is not None:
+            runs.library.close()
 
 
 def _has_display() -> bool:

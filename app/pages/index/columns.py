@@ -81,6 +81,7 @@ class Row:
         instruction: What the robot was told.
         error: Why it failed, for an episode that ended in an error.
         drawing: Its way from above, as JSON (`drawing.drawing_of`); "" without a trace.
+        health: Counts of its answers, as JSON (`experiments.health`); "" without a trace.
     """
 
     path: str
@@ -88,6 +89,7 @@ class Row:
     instruction: str = ""
     error: str = ""
     drawing: str = field(default="", repr=False)
+    health: str = field(default="", repr=False)
 
     @property
     def sha256(self) -> str:

@@ -10,6 +10,7 @@ from app.pages.index.columns import COLUMNS, Value
 from app.pages.index.counting import Counter, Counts
 from app.pages.index.query import Query
 from app.pages.index.store import Store
+from c2nav_engine.experiments.health import Health, merged
 from c2nav_engine.experiments.tags.rules import TAGS
 
 PAGE = 24
@@ -106,6 +107,14 @@ def rows(store: Store, run: str) -> list[dict[str, Value]]:
         dict(row)
         for row in store.read(f"select {names} from episodes where run = ? order by path", (run,))
     ]
+
+
+def health(store: Store, run: str) -> Health:
+    """The health of a run's answers."""
+    kept = store.column(
+        "select health from drawings join episodes using (id) where run = ?", (run,)
+    )
+    return merged(map(Health.from_json, kept))
 
 
 def case_of(store: Store, sha256: str) -> Case | None:

@@ -11,6 +11,7 @@ from app.pages.index.drawing import drawing_of
 from c2nav_engine.episodes.profile import Profile
 from c2nav_engine.errors import C2NavError
 from c2nav_engine.experiments.columns import Row as TaskRow
+from c2nav_engine.experiments.health import health_of
 from c2nav_engine.experiments.tags.account import Account
 from c2nav_engine.experiments.tags.endings import Ending, ending_of
 from c2nav_engine.experiments.tags.rules import tags_of
@@ -104,7 +105,8 @@ def row_of_trace(path: Path, *, name: str, run: str, courses: Courses) -> Row:
         "truth": int(account.course is not None),
         "least_goal_m": _stored(min(account.goal_distances_m, default=None)),
     }
-    return Row(name, values, episode.instruction, footer.error, drawing_of(account))
+    health = health_of(exchanges).as_json()
+    return Row(name, values, episode.instruction, footer.error, drawing_of(account), health)
 
 
 def row_of_task(name: str, row: TaskRow, *, run: str, error: str) -> Row:

@@ -5,7 +5,6 @@ A trace is read again when its time or size changed; its digest then says whethe
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from pathlib import Path
 from app.pages.index.columns import Row
 from app.pages.index.reading import Courses, row_of_task, row_of_trace, run_of
 from app.pages.index.store import Store
-from c2nav_engine.errors import InputError, TraceError
+from c2nav_engine.errors import TraceError
 from c2nav_engine.experiments.ledger import failures_of
 from c2nav_engine.traces.reader import TraceFile
 
@@ -112,15 +111,3 @@ def _lost_tasks(root: Path) -> Iterator[Row]:
             yield row_of_task(
                 f"{run}/traces/{name}.mcap".removeprefix("./"), row, run=run, error=error
             )
-
-
-def manifest_of(root: Path, run: str) -> dict[str, object]:
-    """The manifest of a run; {} where it has none. Raises `InputError` where it is no JSON."""
-    path = root / run / "manifest.json"
-    if not path.is_file():
-        return {}
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        message = f"expected a manifest at {path}, came: {error}"
-        raise InputError(message) from error

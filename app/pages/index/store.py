@@ -21,7 +21,7 @@ from c2nav_engine.errors import InputError
 from c2nav_engine.runner.scene_cache import cache_folder
 
 FILE = "cases.sqlite"
-VERSION = 1
+VERSION = 2
 """Counts changes of the derived tables and of the tags' rules: older rows are read again."""
 
 _DERIVED = f"""
@@ -35,7 +35,7 @@ create table episodes (
 create index episodes_by_trace on episodes (trace_sha256);
 create index episodes_by_run on episodes (run);
 create table words (id integer primary key, instruction text, error text);
-create table drawings (id integer primary key, drawing text);
+create table drawings (id integer primary key, drawing text, health text);
 """
 """Words and drawings stand apart: a filter reads the narrow table alone."""
 
@@ -145,7 +145,8 @@ class Store:
                 key = db.execute(insert, [row.path, mtime_ns, size, *values]).lastrowid
                 words = (key, row.instruction, row.error)
                 db.execute("insert into words values (?, ?, ?)", words)
-                db.execute("insert into drawings values (?, ?)", (key, row.drawing))
+                drawn = (key, row.drawing, row.health)
+                db.execute("insert into drawings values (?, ?, ?)", drawn)
 
     def touch(self, path: str, *, mtime_ns: int, size: int) -> None:
         """The file at that path was written again with the same bytes."""

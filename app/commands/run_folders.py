@@ -1,0 +1,69 @@
+"""What `inspect` makes of a folder: the runs in it, their traces, and the pages about them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from app.commands.sources import opened_traces
+from app.commands.surroundings import surroundings_of
+from app.gateway.runs import RunPages
+from app.pages.library import Library
+from app.session.book import Book
+from app.session.opened import Choice, Opened, Opening
+from c2nav_engine.errors import UsageError
+from c2nav_engine.experiments.spec import Setting
+
+
+def folder_of_runs(what: Sequence[str]) -> Path | None:
+    """The one folder that was named, where it is a run or holds runs; None otherwise."""
+    root = Path(what[0])
+    if len(what) != 1 or not root.is_dir():
+        return None
+    inside = ("manifest.json", "*/manifest.json", "*.mcap", "traces/*.mcap", "*/traces/*.mcap")
+    return root if any(any(root.glob(pattern)) for pattern in inside) else None
+
+
+def traces_under(root: Path) -> tuple[Path, ...]:
+    """Finished traces of a run, or of all runs in a folder."""
+    for pattern in ("traces/*.mcap", "*.mcap", "*/traces/*.mcap"):
+        found = sorted(root.glob(pattern))
+        if found:
+            return tuple(found)
+    return ()
+
+
+def pages_of(root: Path, scenes: Path | None) -> RunPages:
+    """The pages about a folder; maps of an export stand on the floor where the scene is there."""
+    return RunPages(
+        Library(root, scenes), plan_of=lambda story: surroundings_of(story, scenes).plan
+    )
+
+
+def with_later_traces(opened: Opened, root: Path, setting: Setting) -> Opened:
+    """The same, opening also what was finished since: a run may still be going on.
+
+    Only traces below the folder can be asked for.
+    """
+    known = {entry.entry_id for entry in opened.entries}
+
+    def alone(entry: str) -> Opened:
+        path = Path(entry)
+        if path.suffix != ".mcap" or not path.resolve().is_relative_to(root.resolve()):
+            message = f"expected a trace below {root}, came {entry!r}"
+            raise UsageError(message)
+        return opened_traces((path,), setting)
+
+    def owner(entry: str) -> Opened:
+        return opened if entry in known else alone(entry)
+
+    def open_any(choice: Choice) -> Opening:
+        return owner(choice.entry_id).open(choice)
+
+    def book_of(entry: str, sha256: str) -> Book:
+        opens = owner(entry).book
+        assert opens is not None  # recorded traces always have one
+        return opens(entry, sha256)
+
+    return replace(opened, open=open_any, book=book_of)

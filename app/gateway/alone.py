@@ -1,0 +1,53 @@
+"""Binding a port, and serving pages that need neither viser nor a session."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable
+
+import uvicorn
+from fastapi import FastAPI
+
+from c2nav_engine.errors import UsageError
+
+_WAITING = 64
+"""Connections that may wait while the server starts."""
+
+
+def serve_alone(app: FastAPI, listener: socket.socket, *, ready: Callable[[str], None]) -> None:
+    """Serve an application until interrupted.
+
+    Args:
+        app: What to serve.
+        listener: Of `listen`.
+        ready: Told the address before the first request is served.
+    """
+    host, port = listener.getsockname()[:2]
+    config = uvicorn.Config(
+        app, ws="none", log_level="warning", access_log=False, server_header=False
+    )
+    ready(f"http://{host}:{port}/")
+    uvicorn.Server(config).run(sockets=[listener])
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """Take the port, 0 any free one; raises `UsageError` when somebody has it."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    listener = socket.socket(family)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind((host, port))
+    except OSError as error:
+        listener.close()
+        message = f"expected a free port, came {host}:{port} ({error}); choose another with --port"
+        raise UsageError(message) from error
+    # Whoever comes between the printed address and the first answer waits, and is not refused.
+    listener.listen(_WAITING)
+    return listener
+
+
+def names_of(host: str) -> tuple[str, ...]:
+    """Names under which a gateway that is bound beyond loopback may be reached."""
+    if host in ("127.0.0.1", "localhost", "::1"):
+        return ()
+    return (host, socket.gethostname(), socket.getfqdn())
