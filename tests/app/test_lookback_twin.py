@@ -16,8 +16,8 @@ from tests.helpers import stage
 def at_lookback() -> Snapshot:
     """The play, standing at a look-back question instead of its first election."""
     plain = Session(stage.opened_recording(cycles=2)).snapshot
-    facts = stage._facts(Slot.LOOKBACK, 0, stage.EPISODE.start, leg=2)
-    asked = stage._contrast(Slot.LOOKBACK, facts, ("now", "back"), seed=500)
+    facts = stage.facts_of(Slot.LOOKBACK, 0, stage.EPISODE.start, leg=2)
+    asked = stage.contrast_of(Slot.LOOKBACK, facts, ("now", "back"), seed=500)
     decision = Decision(0, 0, 0, asked.facts, asked.question, pending=True)
     story = replace(plain.story, decisions=(decision, *plain.story.decisions[1:]))
     return replace(plain, story=story, stop=0)
