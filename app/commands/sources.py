@@ -21,13 +21,14 @@ from c2nav_engine.experiments.working import source_of
 from c2nav_engine.navigator.config import LoopConfig
 from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.navigator.variants import PRESETS
+from c2nav_engine.rankers.capabilities import PRESETS as MODELS
 from c2nav_engine.runner.opening import OpenSpec, Workbench
 from c2nav_engine.runner.recorded import open_trace, read_trace
 from c2nav_engine.runner.recording import TraceWriter
 from c2nav_engine.runner.reshell import source_of_record
 from c2nav_engine.runner.scene_cache import cache_folder, display_scene
 from c2nav_engine.runner.source import Source
-from c2nav_engine.runner.worlds import Worlds, WorldsConfig
+from c2nav_engine.runner.worlds import World, Worlds, WorldsConfig
 from c2nav_engine.world.scene import Scene
 from c2nav_engine.world.surface import Surface
 
@@ -72,7 +73,8 @@ def opened_source(setting: Setting) -> Opened:
         fork=live.fork,
         variants=tuple(PRESETS),
         rankers=tuple(RANKERS),
-        sends_to=host_beyond(setting),
+        sends_to=host_of(setting.ranker, setting.ranker_options),
+        host_of=host_of,
         book=_book_of_new,
     )
 
@@ -98,7 +100,13 @@ class Live:
         run = self._bench(choice.ranker or self._setting.ranker).open(spec)
         scene = run.scene
         shown = None if scene is None else partial(display_scene, scene, cache_folder())
-        return Opening(header=run.header, run=run, scene=shown)
+        worlds = partial(Worlds, self._source, WorldsConfig(self._profile))
+        return Opening(
+            header=run.header,
+            run=run,
+            scene=shown,
+            world=lambda: worlds().of(run.header.episode.scene_id),
+        )
 
     def fork(self, wanted: ForkAt) -> Run:
         """Another answer at a decision, then the chosen ranker."""
@@ -112,12 +120,13 @@ class Live:
             config=LoopConfig.from_json(header.config),
             fork_decision=wanted.decision,
         )
-        bench = self._bench(wanted.ranker or self._setting.ranker)
+        bench = self._bench(wanted.ranker or self._setting.ranker, wanted.options)
         return bench.fork(spec, wanted.exchanges, wanted.override)
 
-    def _bench(self, ranker: str) -> Workbench:
-        own = ranker == self._setting.ranker
-        options = self._setting.ranker_options if own else dict[str, str]()
+    def _bench(self, ranker: str, options: Mapping[str, str] | None = None) -> Workbench:
+        if options is None:
+            own = ranker == self._setting.ranker
+            options = self._setting.ranker_options if own else dict[str, str]()
         return Workbench(
             source=self._source,
             worlds=self._worlds,
@@ -155,6 +164,8 @@ def opened_traces(
         book=lambda entry, sha256: (
             AuditBook(store_beside(by_id[entry]), sha256) if sha256 else _book_of_new()
         ),
+        sends_to=host_of(setting.ranker, setting.ranker_options),
+        host_of=host_of,
     )
 
 
@@ -225,8 +236,11 @@ def _recorded(path: Path, scenes: Path | None, reasked: Mapping[str, ByDecision]
     def load() -> Scene:
         return display_scene(source.scene(scene_id), cache_folder())
 
+    def world() -> World:
+        return Worlds(source, WorldsConfig(trace.header.profile)).of(scene_id)
+
     def floor() -> Surface:
-        return Worlds(source, WorldsConfig(trace.header.profile)).of(scene_id).surface
+        return world().surface
 
     return Opening(
         header=trace.header,
@@ -238,6 +252,7 @@ def _recorded(path: Path, scenes: Path | None, reasked: Mapping[str, ByDecision]
         surface=None if why else floor,
         no_scene=why,
         reasked=reasked.get(trace.sha256, NOTHING),
+        world=None if why else world,
     )
 
 
@@ -253,15 +268,16 @@ def _fork_recorded(setting: Setting, wanted: ForkAt) -> Run:
     return live.fork(wanted)
 
 
-def host_beyond(setting: Setting) -> str:
+def host_of(ranker: str, options: Mapping[str, str]) -> str:
     """Host outside this machine that pictures would go to; "" when they stay here."""
     from urllib.parse import urlsplit
 
     from app.gateway.doors import is_loopback
 
-    if not setting.ranker.startswith("openai"):
+    if ranker not in RANKERS or not RANKERS[ranker].remote:
         return ""
-    host = urlsplit(setting.ranker_options.get("base_url", "https://api.openai.com")).hostname or ""
+    usual = MODELS[ranker].base_url if ranker in MODELS else ""
+    host = urlsplit(options.get("base_url", usual)).hostname or ""
     return "" if is_loopback(host) else host
 
 

@@ -19,6 +19,7 @@ from app.inspector.panels import (
     review,
     run,
     sketch,
+    turning,
     view,
 )
 from app.inspector.panels.protocol import Build, Update
@@ -98,6 +99,7 @@ class Shell:
                 "Look-back": lookback.build,
                 "Sketch": sketch.build,
                 "Ladder": ladder.build,
+                "Turning": turning.build,
             },
         )
         left.dock_left()

@@ -289,6 +289,35 @@ class Redo(Command):
     type: Literal["redo"] = "redo"
 
 
+# ---------------------------------------------------------------- turning points
+
+
+class MeasureTurning(Command):
+    """Measure regret and the last recoverable decision of the failed branch in view."""
+
+    type: Literal["measure_turning"] = "measure_turning"
+
+
+class TryAnswers(Command):
+    """Try other answers at its worst decisions, or take that up where it was left."""
+
+    type: Literal["try_answers"] = "try_answers"
+
+
+class CancelTrying(Command):
+    """Stop trying other answers; what was tried is kept."""
+
+    type: Literal["cancel_trying"] = "cancel_trying"
+
+
+class OpenFlip(Command):
+    """Go to the branch of an answer that was tried."""
+
+    type: Literal["open_flip"] = "open_flip"
+    decision: int = Field(ge=0)
+    answer: str = Field(max_length=60)
+
+
 class Name(Command):
     """Who sits at the page, for overrides and judgements."""
 
@@ -332,6 +361,10 @@ AnyCommand = Annotated[
     | Remark
     | Undo
     | Redo
+    | MeasureTurning
+    | TryAnswers
+    | CancelTrying
+    | OpenFlip
     | Name,
     Field(discriminator="type"),
 ]

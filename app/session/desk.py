@@ -18,11 +18,13 @@ from app.session.draft import Draft
 from app.session.opened import Choice, Opened, Opening, Run
 from app.session.pictures import Album
 from app.session.placing import Sight
+from app.session.searching import Search
 from app.session.shelf import Shelf
 from app.session.snapshot import Assessment, Chooser, Notice, Reviews, Snapshot, View
 from app.session.story import Story, story_of
 from c2nav_engine.errors import C2NavError
 from c2nav_engine.navigator.requests import Ask
+from c2nav_engine.runner.worlds import World
 from c2nav_engine.world.scene import Scene
 
 log = logging.getLogger(__name__)
@@ -74,6 +76,8 @@ class Desk:
         self.due_s = 0.0
         self.assessor: Assessor | None = None
         self.assessing = False
+        self.world: Callable[[], World] | None = None
+        self.searches: dict[str, Search] = {}
         self._generation = 0
         self._branch_serial = 0
         self.snapshot = self._open(opened.first)
@@ -124,6 +128,8 @@ class Desk:
         if opening.scene is not None:
             self._fetch(opening.scene)
         self.assessor = assessor_of(opening)
+        self.world = opening.world
+        self._leave_searches()
         return Snapshot(
             version=0,
             chooser=Chooser(
@@ -144,6 +150,11 @@ class Desk:
             no_scene=opening.no_scene,
             reasked=opening.reasked,
         )
+
+    def _leave_searches(self) -> None:
+        for search in self.searches.values():
+            search.cancelled.set()
+        self.searches.clear()
 
     def _root(self, opening: Opening) -> Branch:
         run = opening.run

@@ -208,7 +208,9 @@ class Leaving:
     options: Mapping[str, str] | None = None
 
 
-def branch_off(desk: Desk, leaving: Leaving, *, then: Then = lambda _desk, _branch_id: None) -> None:
+def branch_off(
+    desk: Desk, leaving: Leaving, *, then: Then = lambda _desk, _branch_id: None
+) -> None:
     """Start a branch with another answer in the branch in view, and stand in it.
 
     Args:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from app.session import asking, driving, judging, moving, placing, reviewing
+from app.session import asking, driving, judging, moving, placing, reviewing, turning
 from app.session import commands as c
 from app.session.branches import Origin
 from app.session.consent import Consent
@@ -182,5 +182,9 @@ _HANDLERS: dict[type[c.Command], Handler] = {
     c.Remark: _judged(lambda command: judging.remark(command.text)),
     c.Undo: lambda desk, _: reviewing.undo(desk),
     c.Redo: lambda desk, _: reviewing.redo(desk),
+    c.MeasureTurning: lambda desk, _: turning.measure(desk),
+    c.TryAnswers: lambda desk, _: turning.try_answers(desk),
+    c.CancelTrying: lambda desk, _: turning.cancel(desk),
+    c.OpenFlip: lambda desk, command: turning.open_flip(desk, command.decision, command.answer),
     c.Name: lambda desk, command: desk.change(who=command.who or "person 1"),
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -13,6 +13,7 @@ from c2nav_engine.contract.question import Picture
 from c2nav_engine.navigator.requests import Request
 from c2nav_engine.runner.exchange import Exchange, Override
 from c2nav_engine.runner.record import Footer, Header
+from c2nav_engine.runner.worlds import World
 from c2nav_engine.world.scene import Scene
 from c2nav_engine.world.surface import Surface
 
@@ -111,6 +112,8 @@ class Opening:
         surface: Loads the floor, for suspects; None where it is not to be had.
         no_scene: Why there is no scene, and what to do about it.
         reasked: What a re-evaluation says of the recording, by decision.
+        world: Loads the scene to drive through again, anew each time, because a world serves one
+            thread; None where it is not to be had.
     """
 
     header: Header
@@ -123,6 +126,7 @@ class Opening:
     surface: Callable[[], Surface] | None = None
     no_scene: str = ""
     reasked: ByDecision = field(default_factory=lambda: NOTHING)
+    world: Callable[[], World] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +166,7 @@ class Opened:
         book: Opens the reviews of an entry's trace with that digest, or of a new one ("");
             None where nothing can be reviewed.
         blind: Whether answers are covered at the start.
+        host_of: Ranker and options → host outside this machine that pictures would go to.
     """
 
     title: str
@@ -174,3 +179,4 @@ class Opened:
     sends_to: str = ""
     book: Callable[[str, str], Book] | None = None
     blind: bool = False
+    host_of: Callable[[str, Mapping[str, str]], str] = lambda _ranker, _options: ""

@@ -12,6 +12,7 @@ from app.session.draft import Draft
 from app.session.opened import Choice, Entry
 from app.session.reasked import NOTHING, ByDecision, Reasked, shared_until
 from app.session.story import Stop, Story
+from app.session.turning_state import Turning
 from c2nav_engine.contract.outcome import Answered, Key
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.geometry import Point
@@ -221,6 +222,7 @@ class Snapshot:
         place: The asked place, and where it was seen in the branch in view.
         assessed: Branch → decision → what the truth says of it.
         reasked: Decision of the root → what a re-evaluation says of its question.
+        turning: Failed branch → its turning points, as far as they are known.
     """
 
     version: int
@@ -252,6 +254,7 @@ class Snapshot:
         default_factory=dict[str, dict[int, Assessment]]
     )
     reasked: ByDecision = field(default_factory=lambda: NOTHING)
+    turning: dict[str, Turning] = field(default_factory=dict[str, Turning])
 
     @property
     def here(self) -> Stop:
@@ -262,6 +265,11 @@ class Snapshot:
     def decision(self) -> Decision | None:
         """The decision in view: the one here, or the last one before."""
         return self.story.decision_at(self.stop)
+
+    @property
+    def turning_here(self) -> Turning | None:
+        """Turning points of the branch in view; hidden from who judges blind."""
+        return None if self.view.blind else self.turning.get(self.branch.branch_id)
 
     @property
     def judgements(self) -> dict[int, Judgement]:

@@ -9,9 +9,11 @@ from app.session.decisions import Decision
 from app.session.differing import reasked_differ
 from app.session.snapshot import SUSPECT_M, WHOLE, Judgement, Snapshot
 from app.session.story import Story
+from app.session.turning_state import flip_words
 from app.session.wording import is_fault, outcome_words, slot_words
 from c2nav_engine.contract.outcome import Ordering
 from c2nav_engine.episodes.episode import Episode
+from c2nav_engine.experiments.turning.flips import TURNING, UNSTABLE
 
 Json = dict[str, Any]
 
@@ -35,6 +37,7 @@ def timeline_of(snapshot: Snapshot) -> Json:
             *_events(story),
             *_people(story, snapshot.judgements),
             *_reasked(snapshot),
+            *_turning(snapshot),
         ],
         "legs": _legs(story),
         "leg_ends": _leg_ends(snapshot.judgements),
@@ -120,6 +123,26 @@ def _reasked(snapshot: Snapshot) -> list[Json]:
             rankers = ", ".join(dict.fromkeys(answer.ranker for answer in others))
             words = f"asked again at decision {decision.number}: {rankers} differs"
             found.append({"sign": "≠", "step": decision.step, "fault": False, "words": words})
+    return found
+
+
+def _turning(snapshot: Snapshot) -> list[Json]:
+    """Turning points of the branch in view; a click opens the branch of the other answer."""
+    state = snapshot.turning_here
+    if state is None:
+        return []
+    steps = {decision.number: decision.step for decision in snapshot.story.decisions}
+    found: list[Json] = []
+    if state.recoverable is not None and state.recoverable.decision is not None:
+        number = state.recoverable.decision
+        words = f"decision {number} · last recoverable, for a noiseless observer · privileged"
+        found.append({"sign": "⇥", "step": steps[number], "fault": False, "words": words})
+    for flip in state.flips:
+        sign = {TURNING: "★", UNSTABLE: "☆"}.get(flip.verdict)
+        if sign is not None:
+            opens = {"decision": flip.decision, "answer": flip.answer}
+            event = {"sign": sign, "step": steps[flip.decision], "fault": False, "opens": opens}
+            found.append({**event, "words": flip_words(flip)})
     return found
 
 

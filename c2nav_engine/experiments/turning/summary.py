@@ -41,8 +41,8 @@ class TurningSummary:
         failures: Failed episodes of the runs.
         analysed: How many of them a table speaks of; all rates are of these.
         verdicts: Class → rate, every class once.
-        by_slot: Slot → rate of failures one answer away in it; by the first turning point of an
-            episode, whose decision is its worst by regret, so that each failure counts once.
+        by_slot: Slot → rate of failures one answer away in it, by `turning_point`, so that each
+            failure counts once.
     """
 
     failures: int
@@ -82,7 +82,8 @@ def summary_of(rows: Iterable[Row], failed: Collection[str]) -> TurningSummary:
         if row["trace_sha256"] in wanted:
             by_trace[str(row["trace_sha256"])].append(row)
     verdicts = Counter(verdict_of(mine) for mine in by_trace.values())
-    slots = Counter(slot for mine in by_trace.values() if (slot := turning_slot(mine)) is not None)
+    points = (turning_point(mine) for mine in by_trace.values())
+    slots = Counter(Slot(str(point["slot"])) for point in points if point is not None)
     analysed = len(by_trace)
     return TurningSummary(
         failures=len(failed),
@@ -113,11 +114,12 @@ def verdict_of(rows: Sequence[Row]) -> str:
     return BY_CONTROLLER if _lost_by_controller(rows) else NOT_ONE_AWAY
 
 
-def turning_slot(rows: Iterable[Row]) -> Slot | None:
-    """Slot of the first turning point of an episode; None without one."""
-    found = (row for row in rows if row["part"] == FLIP and row["verdict"] == TURNING)
-    first = next(found, None)
-    return None if first is None else Slot(str(first["slot"]))
+def turning_point(rows: Iterable[Row]) -> Row | None:
+    """The turning point that an episode is named by: at its worst decision by regret that has one.
+
+    Decisions are tried worst first, so it is the first row that is one. None without one.
+    """
+    return next((r for r in rows if r["part"] == FLIP and r["verdict"] == TURNING), None)
 
 
 def _untried(rows: Iterable[Row], flips: Iterable[Row]) -> bool:
