@@ -3,50 +3,44 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import pyarrow
-import pyarrow.parquet
-
-# pyarrow ships no types; this module is where the row tables meet it.
-_pa: Any = pyarrow
-_parquet: Any = pyarrow.parquet
-
 Row = Mapping[str, str | int | float | None]
 
-COLUMNS: Mapping[str, Any] = {
-    "episode_id": _pa.string(),
-    "trajectory_id": _pa.string(),
-    "scene_id": _pa.string(),
-    "variant": _pa.string(),
-    "ranker": _pa.string(),
-    "seed": _pa.int64(),
-    "outcome": _pa.string(),
-    "ne_m": _pa.float64(),
-    "os": _pa.int64(),
-    "success": _pa.int64(),
-    "success_zero_shot": _pa.int64(),
-    "spl": _pa.float64(),
-    "ndtw": _pa.float64(),
-    "sdtw": _pa.float64(),
-    "path_length_m": _pa.float64(),
-    "steps": _pa.int64(),
-    "collisions": _pa.int64(),
-    "decisions": _pa.int64(),
-    "queries": _pa.int64(),
-    "invalid": _pa.int64(),
-    "abstained": _pa.int64(),
-    "fallbacks": _pa.int64(),
-    "glances": _pa.int64(),
-    "walkbacks": _pa.int64(),
-    "tokens": _pa.int64(),
-    "latency_s": _pa.float64(),
-    "trace_sha256": _pa.string(),
+COLUMNS: Mapping[str, str] = {
+    "episode_id": "string",
+    "trajectory_id": "string",
+    "scene_id": "string",
+    "variant": "string",
+    "ranker": "string",
+    "seed": "int64",
+    "outcome": "string",
+    "ne_m": "float64",
+    "os": "int64",
+    "success": "int64",
+    "success_zero_shot": "int64",
+    "spl": "float64",
+    "ndtw": "float64",
+    "sdtw": "float64",
+    "path_length_m": "float64",
+    "steps": "int64",
+    "collisions": "int64",
+    "decisions": "int64",
+    "queries": "int64",
+    "invalid": "int64",
+    "abstained": "int64",
+    "fallbacks": "int64",
+    "glances": "int64",
+    "walkbacks": "int64",
+    "tokens": "int64",
+    "latency_s": "float64",
+    "trace_sha256": "string",
 }
-"""Name → type, in file order; missing is null (empty in the CSV)."""
+"""Name → Arrow type, in file order; missing is null (empty in the CSV)."""
 
 WALL_COLUMNS = ("latency_s", "trace_sha256")
 """What differs between two runs of the same specs: waiting times, and traces that hold them."""
@@ -55,12 +49,13 @@ WALL_COLUMNS = ("latency_s", "trace_sha256")
 def write_rows(rows: Iterable[Row], folder: Path) -> None:
     """Write `episodes.parquet` and `episodes.csv`, replacing earlier ones whole."""
     rows = list(rows)
-    schema = _pa.schema(list(COLUMNS.items()))
-    table = _pa.Table.from_pylist(
+    pyarrow, parquet = _arrow()
+    schema = pyarrow.schema(list(COLUMNS.items()))
+    table = pyarrow.Table.from_pylist(
         [{name: row.get(name) for name in COLUMNS} for row in rows], schema
     )
     parquet_part = folder / "episodes.parquet.part"
-    _parquet.write_table(table, parquet_part)
+    parquet.write_table(table, parquet_part)
     parquet_part.replace(folder / "episodes.parquet")
     csv_part = folder / "episodes.csv.part"
     with csv_part.open("w", newline="", encoding="utf-8") as file:
@@ -72,7 +67,13 @@ def write_rows(rows: Iterable[Row], folder: Path) -> None:
 
 def read_rows(folder: Path) -> list[dict[str, str | int | float | None]]:
     """The rows of a run folder's `episodes.parquet`."""
-    return _parquet.read_table(folder / "episodes.parquet").to_pylist()
+    _, parquet = _arrow()
+    return parquet.read_table(folder / "episodes.parquet").to_pylist()
+
+
+def _arrow() -> tuple[Any, Any]:
+    """Arrow and its Parquet part, untyped; imported for tables alone, not by every worker."""
+    return importlib.import_module("pyarrow"), importlib.import_module("pyarrow.parquet")
 
 
 def _cell(value: str | float | None) -> str:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import NormalDist
 
 import numpy as np
 from jaxtyping import Float
-from scipy.special import ndtr, ndtri
 
 LEVEL = 0.95
 RESAMPLES = 10_000
+_NORMAL = NormalDist()
 _CHUNK = 2_000_000
 """Drawn values held at once."""
 
@@ -37,7 +38,7 @@ def wilson(successes: int, n: int, *, level: float = LEVEL) -> Interval:
     """Score interval of a rate, as a fraction of one; n = 0 gives an estimate of nan in [0, 1]."""
     if n == 0:
         return Interval(math.nan, 0.0, 1.0, 0)
-    z = float(ndtri(0.5 + level / 2.0))
+    z = _NORMAL.inv_cdf(0.5 + level / 2.0)
     rate = successes / n
     centre = (rate + z * z / (2 * n)) / (1 + z * z / n)
     half = z / (1 + z * z / n) * math.sqrt(rate * (1 - rate) / n + z * z / (4 * n * n))
@@ -89,15 +90,18 @@ def _bca_ends(
     rounding = 1e-9 * float(np.ptp(sample))
     below = np.count_nonzero(means < mean - rounding)
     at_or_below = np.count_nonzero(means <= mean + rounding)
-    bias = float(ndtri((below + at_or_below) / (2 * len(means))))
+    # Kept off 0 and 1, where few resamples may all lie on one side of the mean.
+    share = (below + at_or_below) / (2 * len(means))
+    edge = 0.5 / len(means)
+    bias = _NORMAL.inv_cdf(min(max(share, edge), 1.0 - edge))
     # The jackknife of a mean is linear in the values: only their skewness is left. It has no unit,
     # so the values are scaled first: cubes of very small ones would vanish.
     centred = sample - mean
     centred /= np.abs(centred).max()
     acceleration = float((centred**3).sum() / (6.0 * (centred**2).sum() ** 1.5))
-    z = ndtri(np.array([0.5 - level / 2.0, 0.5 + level / 2.0]))
-    shifted = bias + (bias + z) / (1.0 - acceleration * (bias + z))
-    low, high = np.quantile(means, ndtr(shifted))
+    z = _NORMAL.inv_cdf(0.5 + level / 2.0)
+    shifted = [bias + (bias + side) / (1.0 - acceleration * (bias + side)) for side in (-z, z)]
+    low, high = np.quantile(means, [_NORMAL.cdf(each) for each in shifted])
     return float(low), float(high)
 
 
