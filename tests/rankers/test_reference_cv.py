@@ -15,8 +15,15 @@ from c2nav_engine.contract.render import render
 from c2nav_engine.rankers.random_order import RandomOrder
 from c2nav_engine.rankers.reading import read
 from c2nav_engine.rankers.reference_cv import ReferenceCv
+from c2nav_engine.rankers.reference_cv.judging import seen_spot
 from c2nav_engine.rankers.reference_cv.pixels import Pixels, likeness
-from c2nav_engine.rankers.reference_cv.words import amount_in_leg, read_leg, turns_made
+from c2nav_engine.rankers.reference_cv.words import (
+    Landmark,
+    amount_in_leg,
+    on_first_leg,
+    read_leg,
+    turns_made,
+)
 from c2nav_engine.rankers.wrapper import AskingRanker
 from tests.helpers.questions import encoded, question
 
@@ -105,6 +112,27 @@ def test_a_near_destination_is_here_and_a_missing_one_ahead():
     assert winner(question(Slot.GROUND, legs=legs, now=room())) == "ahead"
 
 
+@pytest.mark.parametrize("thing", ["dining table", "sink"])
+def test_a_thing_without_a_colour_of_its_own_is_here_after_a_long_way_only(thing: str):
+    legs = ("go on", f"stop by the {thing}")
+    white = room((255, 255, 255), size=70)
+    way = "Leg done: moved many steps.\nThis leg so far: moved {} steps."
+    early = question(Slot.GROUND, legs=legs, now=white, sketch=way.format("several"))
+    late = question(Slot.GROUND, legs=legs, now=white, sketch=way.format("many"))
+    assert [winner(early), winner(late)] == ["ahead", "here"]
+
+
+def test_the_patch_that_stands_where_such_a_thing_can_stand_is_the_thing():
+    rgb = np.full((224, 224, 3), (215, 205, 180), np.uint8)
+    rgb[20:90, 20:120] = RED
+    rgb[170:210, 150:190] = RED
+    view = Pixels(encoded(rgb))
+    low, high = (seen_spot(view, Landmark("red", 1.0, noun)) for noun in ("bench", "painting"))
+    assert low.top > 0.7
+    assert high.reach < 0.5
+    assert [spot.share for spot in view.spots("red")] == [high.share, low.share]
+
+
 def test_swapped_orders_agree_because_only_pixels_and_words_count():
     ranker = AskingRanker(ReferenceCv())
     for seed in range(5):
@@ -133,6 +161,41 @@ def test_an_opening_turn_favours_its_side_until_the_sketch_says_it_was_made():
     )
     assert winner(question(legs=legs, pictures=same, sketch=before)) == "left"
     assert winner(question(legs=legs, pictures=same, sketch=after)) == "front"
+
+
+def test_turning_around_goes_on_the_way_it_was_begun():
+    same = dict.fromkeys(FAN, room())
+    legs = ("Turn around and leave the room", "stop")
+    for side in ("left", "right"):
+        begun = (
+            f"This leg so far: moved a few steps, turned {side}.\n"
+            f"Latest moves, oldest first: turned {side} and moved a few steps."
+        )
+        assert winner(question(legs=legs, pictures=same, sketch=begun)) == side
+
+
+def test_a_later_turn_gives_way_to_a_landmark_and_the_first_one_does_not_wait():
+    shown = {"left": room(), "front": room(RED, size=14), "right": room()}
+    first = "This leg so far: just begun."
+    later = f"Leg done: moved many steps.\n{first}"
+    legs = ("Turn left and walk to the red bench", "stop")
+    assert winner(question(legs=legs, pictures=shown, sketch=first)) == "left"
+    assert winner(question(legs=legs, pictures=shown, sketch=later)) == "front"
+
+
+def test_what_the_next_leg_leads_to_draws_already():
+    shown = {"left": room(), "front": room(), "right": room(RED)}
+    legs = ("Leave the room", "go to the red bench", "stop")
+    assert winner(question(legs=legs, pictures=shown, sketch="")) == "right"
+
+
+def test_a_view_of_many_things_is_preferred_to_a_wall():
+    rgb = np.full((224, 224, 3), (215, 205, 180), np.uint8)
+    rgb[90:140] = np.arange(224, dtype=np.uint8)[None, :, None]
+    far = encoded(rgb)
+    assert Pixels(far).variety > Pixels(room()).variety
+    shown = {"left": room(), "front": room(), "right": far}
+    assert winner(question(legs=("go on", "stop"), pictures=shown, sketch="")) == "right"
 
 
 def test_every_inversion_is_answered_in_its_form():
@@ -164,6 +227,9 @@ def test_the_sketch_s_words_are_read():
     assert amount_in_leg(sketch) == 2
     assert turns_made(sketch, "left") == 1
     assert amount_in_leg("") == 0
+    assert not on_first_leg(sketch)
+    assert on_first_leg("This leg so far: just begun.")
+    assert not on_first_leg("")
 
 
 def test_other_walls_are_unlike():

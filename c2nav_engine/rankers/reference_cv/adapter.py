@@ -1,9 +1,9 @@
 """`reference-cv`: pixels and text only, by OpenCV; no weights, no network.
 
 The embedded default. It is not a vision-language model and reproduces no number of the paper: it
-knows common colour words, turn words and how far a view seems to reach. It receives what a model
-receives, the same words and the same JPEG bytes, and answers in the same text through the same
-parser. It reads neither the keys of alternatives nor anything the controller knows.
+knows common colour words, turn words and how much a view shows in the distance. It receives what a
+model receives, the same words and the same JPEG bytes, and answers in the same text through the
+same parser. It reads neither the keys of alternatives nor anything the controller knows.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Labelled = Sequence[tuple[str, Alternative]]
 
 
 class ReferenceCv:
-    """Colour words, turn words and how far a view reaches against the pixels of each view."""
+    """Colour words, turn words and the variety of a view against the pixels of each."""
 
     @property
     def name(self) -> str:
@@ -71,7 +71,8 @@ def _scores(prompt: Prompt) -> dict[str, float] | None:
         return None
     if question.slot in {Slot.SEEING, Slot.GLANCE}:
         sides = [item.text for _, item in labelled]
-        found = judging.direction_scores(views, sides, leg=leg, sketch=question.sketch)
+        legs = (leg, judging.words_after(question.legs, question.leg))
+        found = judging.direction_scores(views, sides, legs=legs, sketch=question.sketch)
     elif question.slot is Slot.LOOKBACK:
         found = [judging.destination_score(view, leg) for view in views]
     else:
@@ -92,11 +93,9 @@ def _statement_scores(prompt: Prompt, labelled: Labelled, context: Sequence[Pixe
         support = judging.next_leg_support(
             now, earlier, legs=(leg, following), sketch=question.sketch
         )
-    elif question.slot is Slot.GROUND:
-        support = 1.0 if judging.arrived_here(now, leg, sketch=question.sketch) else -1.0
     else:
-        covered = judging.journey_covered(now, leg, sketch=question.sketch)
-        support = 1.0 if covered else -1.0
+        # A journey covers the route when it has led to the last leg's thing: one piece of evidence.
+        support = 1.0 if judging.arrived_here(now, leg, sketch=question.sketch) else -1.0
     sides = {"for": support, "against": -support}
     return [_matching(item.text, _STATEMENT_WORDS, sides) for _, item in labelled]
 

@@ -1,7 +1,8 @@
-"""Scores from words and pixels, slot by slot. All weights are plain priors [C], none is fitted.
+"""Scores from words and pixels, slot by slot. All weights are round priors [C].
 
-The order of the evidence: a coloured landmark of the active leg, then the leg's turn words, then
-open floor and a preference for going on ahead.
+They were set by looking at recorded questions of the even built-in episodes; none is fitted to a
+house. The order of the evidence: a coloured landmark in view, then turn words, then many colours
+in the distance and a preference for going on ahead.
 """
 
 from __future__ import annotations
@@ -15,17 +16,26 @@ from c2nav_engine.rankers.reference_cv.words import (
     Landmark,
     LegWords,
     amount_in_leg,
+    on_first_leg,
     read_leg,
     turns_made,
 )
 
-NEAR_REACH = 0.70
-"""[C] A thing that stands on the floor and reaches this far down a level picture is some three
-metres away or less, for the cameras of both body profiles; here it only means "near"."""
-NEAR_SHARE = 0.008
+NEAR_REACH = 0.75
+"""[C] A thing that stands on the floor and reaches this far down a level picture is a few steps
+away, for the cameras of both body profiles; here it only means "near"."""
+NEAR_SHARE = 0.01
 """[C] Smaller spots are not trusted to be the thing itself."""
 NEAR_HANGING_SHARE = 0.015
-"""[C] A thing on a wall is near when it is at least so large."""
+"""[C] A thing on a wall or on furniture is near when it is at least so large."""
+ATTRACTION = 3.0
+"""[C] Weight of a landmark in full view; it outweighs every other evidence for a direction."""
+VARIETY = 0.75
+"""[C] Weight of the variety in the distance."""
+USUAL_VARIETY = 4.0
+"""[C] A view down a room has about so much; without other views it is what to compare with."""
+AHEAD = 0.4
+"""[C] What speaks for going on ahead; as much speaks against turning back."""
 HANGING_REACH = 0.6
 """[C] Things on walls end above the camera or little below it."""
 LOW_TOP = 0.42
@@ -34,6 +44,15 @@ TALL_REACH = 0.6
 """[C] Tall things go down well below the horizon."""
 SOLID_FILL = 0.4
 """[C] Furniture fills its outline; foliage does not."""
+EXIT_SIDE = 0.7
+"""[C] Weight of the side on which the leg leaves, once some way was made."""
+TURN_AT_ONCE = 1.5
+"""[C] Weight of turning around, and of a turn that the instruction begins with: both are made
+where the robot stands."""
+SAME_WAY_ROUND = 0.5
+"""[C] Weight of turning around the way it was begun."""
+TURN_SOMEWHERE = 0.3
+"""[C] Weight of a later turn, which is made where the way allows it."""
 LARGEST_SHARE = 0.5
 """[C] A patch over half the picture is a wall or a floor, not a thing."""
 FEW, SEVERAL, MANY = 1, 2, 3
@@ -48,20 +67,31 @@ ROOM_CHANGE = 0.8
 
 
 def direction_scores(
-    views: Sequence[Pixels], sides: Sequence[str], *, leg: LegWords, sketch: str
+    views: Sequence[Pixels],
+    sides: Sequence[str],
+    *,
+    legs: tuple[LegWords, LegWords | None],
+    sketch: str,
 ) -> list[float]:
     """How well each view continues the leg.
+
+    What the next leg leads to counts as well: the leg in hand ends where that one begins, so that
+    its landmark often comes into view first.
 
     Args:
         views: What each shows.
         sides: Where each lies, in the words beside its label ("to the left").
-        leg: The active leg's words.
+        legs: Words of the active leg and of the one after it, if there is one.
         sketch: The sketch's words, which say whether the leg's turn was made.
     """
+    leg, following = legs
+    landmarks = list(leg.landmarks)
+    if following is not None and following.target is not None:
+        landmarks.append(following.target)
     return [
-        3.0 * sum(_attraction(view, landmark) for landmark in leg.landmarks)
+        ATTRACTION * sum(_attraction(view, landmark) for landmark in landmarks)
+        + VARIETY * view.variety
         + _side_prior(side, leg, sketch)
-        + view.depth_of_view
         for view, side in zip(views, sides, strict=True)
     ]
 
@@ -91,39 +121,38 @@ def next_leg_support(
 def is_near(view: Pixels, landmark: Landmark) -> bool:
     """Whether the landmark's colour is there, large enough, and where such a thing can be."""
     spot = seen_spot(view, landmark)
-    if landmark.hanging:
+    if landmark.hanging or landmark.raised:
         return spot.share >= NEAR_HANGING_SHARE
     return spot.share >= NEAR_SHARE and spot.reach >= NEAR_REACH
 
 
 def seen_spot(view: Pixels, landmark: Landmark) -> Spot:
-    """The landmark's patch, or none when its place or shape is not that of such a thing."""
-    spot = view.spot(landmark.colour)
+    """The largest patch of the landmark's colour that has the place and shape of such a thing."""
+    fitting = (spot for spot in view.spots(landmark.colour) if _fits(spot, landmark))
+    return next(fitting, Spot())
+
+
+def _fits(spot: Spot, landmark: Landmark) -> bool:
     misplaced = (
         (landmark.hanging and spot.reach > HANGING_REACH)
         or (landmark.low and spot.top < LOW_TOP)
         or (landmark.tall and (spot.top > LOW_TOP or spot.reach < TALL_REACH))
     )
     is_surface = spot.share > LARGEST_SHARE
-    return Spot() if misplaced or is_surface or spot.fill < SOLID_FILL else spot
+    return not misplaced and not is_surface and spot.fill >= SOLID_FILL
 
 
 def arrived_here(now: Pixels, leg: LegWords, *, sketch: str) -> bool:
-    """Whether the last leg's thing is near; without one, whether the leg has gone some way.
+    """Whether the last leg's thing is near.
 
-    A last leg is short: it only leads up to what was in view when it began.
+    A thing without a colour of its own must also come after a long way, and one that this ranker
+    does not know is taken to be where a long way ends.
     """
-    if leg.target is not None:
-        return is_near(now, leg.target)
-    return amount_in_leg(sketch) >= SEVERAL
-
-
-def journey_covered(now: Pixels, leg: LegWords, *, sketch: str) -> bool:
-    """Whether the record speaks for the whole route: the last leg went on, to its end."""
-    amount = amount_in_leg(sketch)
-    if leg.target is not None:
-        return amount >= FEW and is_near(now, leg.target)
-    return amount >= SEVERAL
+    target = leg.target
+    if target is not None and target.colour not in FAINT:
+        return is_near(now, target)
+    went_far = amount_in_leg(sketch) >= MANY
+    return went_far and (target is None or is_near(now, target))
 
 
 def destination_score(view: Pixels, leg: LegWords) -> float:
@@ -134,7 +163,7 @@ def destination_score(view: Pixels, leg: LegWords) -> float:
 def action_scores(now: Pixels, *, leg: LegWords, sketch: str) -> dict[str, float]:
     """Direct action: where in the current view the leg's landmark or turn word points."""
     scores = {
-        "forward": _side_prior("ahead", leg, sketch) + now.depth_of_view - 3.0,
+        "forward": _side_prior("ahead", leg, sketch) + VARIETY * (now.variety - USUAL_VARIETY),
         "left": _side_prior("to the left", leg, sketch),
         "right": _side_prior("to the right", leg, sketch),
     }
@@ -150,6 +179,11 @@ def words_of_leg(legs: Sequence[str], index: int) -> LegWords:
     return read_leg(legs[min(index, len(legs) - 1)])
 
 
+def words_after(legs: Sequence[str], index: int) -> LegWords | None:
+    """The words of the leg after this one, or None after the last."""
+    return read_leg(legs[index + 1]) if index + 1 < len(legs) else None
+
+
 def _attraction(view: Pixels, landmark: Landmark) -> float:
     central = 1.0 - 0.4 * abs(seen_spot(view, landmark).across)
     return landmark.weight * central * _visibility(view, landmark)
@@ -163,17 +197,19 @@ def _visibility(view: Pixels, landmark: Landmark) -> float:
 
 def _side_prior(side: str, leg: LegWords, sketch: str) -> float:
     """What words alone say for a side: going on ahead, the leg's turn, the side it leaves on."""
-    prior = 0.2 if side == "ahead" else 0.0
+    prior = AHEAD if side == "ahead" else 0.0
     if side.startswith("behind"):
-        prior -= 0.5
+        prior -= AHEAD
     amount = amount_in_leg(sketch)
     if leg.exit_side and leg.exit_side in side and amount >= SEVERAL:
-        prior += 0.3
+        prior += EXIT_SIDE
     turn = leg.turn
     due = turn is not None and (turn.opening or amount >= MANY)
     if turn is None or not due or turns_made(sketch, turn.side) >= turn.cycles:
         return prior
     if turn.side == "around":
-        return prior + (0.0 if side == "ahead" else 0.5)
-    # Without a sketch nothing says whether the turn was made, so its word counts for less.
-    return prior + (0.6 if sketch else 0.2) * (turn.side in side)
+        # Once begun, it goes on the same way round.
+        begun = "left" if turns_made(sketch, "left") > 0 else "right"
+        return prior + (0.0 if side == "ahead" else TURN_AT_ONCE + SAME_WAY_ROUND * (begun in side))
+    at_once = turn.opening and on_first_leg(sketch)
+    return prior + (TURN_AT_ONCE if at_once else TURN_SOMEWHERE) * (turn.side in side)

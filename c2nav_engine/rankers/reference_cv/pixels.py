@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float32, UInt8
+from jaxtyping import Bool, Float32, Int32, UInt8
 
 from c2nav_engine.contract.question import Picture
 from c2nav_engine.errors import InternalError
@@ -23,6 +23,9 @@ _COLOURLESS_CHROMA = 2.5
 _SPOT_FLOOR = 0.002
 """Share of the picture under which a spot is noise."""
 
+_COLOUR_STEPS = (16, 24, 32)
+"""[C] Colours are counted in steps of these sizes; several, so that counts are seldom equal."""
+
 Bgr = UInt8[np.ndarray, "rows columns 3"]
 Hsv = UInt8[np.ndarray, "rows columns 3"]
 Mask = Bool[np.ndarray, "rows columns"]
@@ -30,7 +33,7 @@ Mask = Bool[np.ndarray, "rows columns"]
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """The largest connected patch of one colour.
+    """A connected patch of one colour.
 
     Attributes:
         share: Of the picture, 0 when there is none worth naming.
@@ -61,42 +64,32 @@ class Pixels:
         chroma = np.hypot(lab[..., 1], lab[..., 2])
         return bool(np.percentile(chroma, 99.0) < _COLOURLESS_CHROMA)
 
-    def spot(self, colour: str) -> Spot:
-        """The largest patch of a colour."""
+    def spots(self, colour: str) -> tuple[Spot, ...]:
+        """The patches of a colour, largest first."""
         mask = _COLOURS[colour].mask(self._hsv).astype(np.uint8)
         opened = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((2, 2), np.uint8))
-        count, _, stats, centres = cv2.connectedComponentsWithStats(opened, connectivity=8)
-        if count < 2:
-            return Spot()
-        largest = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
+        _, _, stats, centres = cv2.connectedComponentsWithStats(opened, connectivity=8)
         rows, columns = opened.shape
-        _, top, width, height, area = (float(value) for value in stats[largest])
-        if area < _SPOT_FLOOR * rows * columns:
-            return Spot()
-        return Spot(
-            share=area / (rows * columns),
-            across=2.0 * float(centres[largest][0]) / columns - 1.0,
-            top=top / rows,
-            reach=(top + height) / rows,
-            fill=area / (width * height),
-        )
+        # The first component is everything that is not of the colour.
+        found = [
+            _spot(values, float(centre[0]), rows=rows, columns=columns)
+            for values, centre in zip(stats[1:], centres[1:], strict=True)
+            if values[cv2.CC_STAT_AREA] >= _SPOT_FLOOR * rows * columns
+        ]
+        return tuple(sorted(found, key=lambda spot: -spot.share))
 
     @functools.cached_property
-    def depth_of_view(self) -> float:
-        """How far the view seems to reach straight ahead: the detail at and below its middle.
+    def variety(self) -> float:
+        """How much stands around the horizon: log of the number of coarse colours there.
 
-        A near wall or cupboard is smooth there, while far rooms crowd many edges into few pixels.
-        Unitless, some 2 (a bare wall) to 5; secondary evidence only.
+        A wall or a cupboard close by fills that band with few colours, while a doorway, a hallway
+        or a far room brings in those of many things. Unitless, some 2 (a bare wall) to 5.
         """
-        grey: Float32[np.ndarray, "rows columns"] = np.asarray(
-            cv2.cvtColor(self._bgr, cv2.COLOR_BGR2GRAY), dtype=np.float32
-        )
-        across, down = (cv2.Sobel(grey, cv2.CV_32F, dx, 1 - dx) for dx in (1, 0))
-        rows, columns = grey.shape
-        middle = np.hypot(across, down)[
-            2 * rows // 5 : 7 * rows // 10, columns // 3 : -columns // 3
-        ]
-        return float(np.log1p(middle).mean())
+        rows, columns = self._bgr.shape[:2]
+        band = self._bgr[rows * 42 // 100 : rows * 60 // 100, columns // 4 : -columns // 4]
+        pixels = band.reshape(-1, 3)
+        counts = [len(np.unique(pixels // step, axis=0)) for step in _COLOUR_STEPS]
+        return float(np.log(counts).mean())
 
     @functools.cached_property
     def surroundings(self) -> Float32[np.ndarray, " bins"]:
@@ -111,6 +104,19 @@ class Pixels:
 def likeness(first: Pixels, second: Pixels) -> float:
     """How alike the surroundings of two pictures are: the overlap of their histograms, 0 to 1."""
     return float(np.minimum(first.surroundings, second.surroundings).sum())
+
+
+def _spot(
+    stats: Int32[np.ndarray, " numbers"], middle_px: float, *, rows: int, columns: int
+) -> Spot:
+    _, top, width, height, area = (float(value) for value in stats)
+    return Spot(
+        share=area / (rows * columns),
+        across=2.0 * middle_px / columns - 1.0,
+        top=top / rows,
+        reach=(top + height) / rows,
+        fill=area / (width * height),
+    )
 
 
 def _decoded(jpeg: bytes) -> Bgr:

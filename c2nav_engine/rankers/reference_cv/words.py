@@ -47,7 +47,8 @@ COLOUR_WORDS = {
     "gray": "grey",
 }
 _WHITE_WARE = ("sink", "bathtub", "tub", "toilet", "basin")
-_WOODEN = ("wardrobe", "bookshelf", "bookcase", "cabinet", "dresser", "piano")
+_TALL_WOODEN = ("wardrobe", "bookshelf", "bookcase")
+_WOODEN = (*_TALL_WOODEN, "cabinet", "dresser", "piano")
 COLOURED_THINGS = {
     **dict.fromkeys(("plant", "plants", "tree", "bush"), "green"),
     **dict.fromkeys(("television", "tv"), "black"),
@@ -70,6 +71,8 @@ LOW = frozenset(
         *_WHITE_WARE,
         "bed",
         "chest",
+        "dresser",
+        "sideboard",
         "rug",
         "mat",
         "runner",
@@ -80,13 +83,16 @@ LOW = frozenset(
     ]
 )
 """Things lower than the camera: they end below the horizon."""
-TALL = frozenset(_WOODEN)
+RAISED = frozenset(["television", "tv", "ball", "globe", "vase", "lamp", "aquarium"])
+"""Things that stand on furniture: their lower edge tells no distance, but their size does."""
+TALL = frozenset(_TALL_WOODEN)
 """Things that reach from the floor past the camera's height."""
 
 _COLOUR = re.compile(rf"\b(?:{'|'.join([*COLOUR_WORDS, *COLOURED_THINGS])})\b")
 _LEAVING = re.compile(
     r"\b(?:leave|leaving|exit|exiting|out of|away from|from|behind you|back to)\b[^,.;]{0,30}$"
 )
+_PASSING = re.compile(r"\b(?:past|passing|over|between)\b[^,.;]{0,40}$")
 _BEHIND_AFTER = re.compile(r"^[^,.;]{0,20}\bbehind you\b")
 _TURN = re.compile(
     r"\b(?:turn|turning|veer|bear|take|make|hang|pivot|swing|curve)\b"
@@ -107,8 +113,8 @@ class Landmark:
 
     Attributes:
         colour: One of the colours that `pixels` knows.
-        weight: 1 for what the leg leads to, less for what it mentions before, negative for what
-            it leaves behind.
+        weight: 1 for what the leg leads to, less for what it goes past or mentions before,
+            negative for what it leaves behind.
         noun: The word after the colour.
     """
 
@@ -120,6 +126,11 @@ class Landmark:
     def hanging(self) -> bool:
         """Whether it hangs on a wall rather than stands on the floor."""
         return self.noun in HANGING
+
+    @property
+    def raised(self) -> bool:
+        """Whether it stands on furniture."""
+        return self.noun in RAISED
 
     @property
     def low(self) -> bool:
@@ -211,6 +222,11 @@ def turns_made(sketch: str, side: str) -> int:
     return (left - right if side == "left" else right - left) + back
 
 
+def on_first_leg(sketch: str) -> bool:
+    """Whether the sketch tells of a leg and of none that is done; without a sketch nobody knows."""
+    return bool(sketch) and "leg done" not in sketch.casefold()
+
+
 def amount_in_leg(sketch: str) -> int:
     """How far this leg went by the sketch's words: 0 none or unknown, 1 a few, 2 several, 3 many.
 
@@ -242,6 +258,8 @@ def _colour(word: str) -> str:
 def _weight(text: str, match: re.Match[str], *, last: bool) -> float:
     if _LEAVING.search(text[: match.start()]) or _BEHIND_AFTER.search(text[match.end() :]):
         return -0.4
+    if _PASSING.search(text[: match.start()]):
+        return 0.3
     return 1.0 if last else 0.5
 
 
