@@ -14,11 +14,13 @@ from dataclasses import dataclass
 import uvicorn
 from fastapi import FastAPI
 
+from app.gateway.agreement import mount_agreement
 from app.gateway.alone import listen, names_of
 from app.gateway.api import api
 from app.gateway.assets import assets, serve_assets
 from app.gateway.doors import Doors
 from app.gateway.feed import Feed
+from app.gateway.figures import figures
 from app.gateway.judging import mount_judging
 from app.gateway.runs import RunPages, mount_runs
 from app.gateway.shell_page import ShellPage
@@ -72,6 +74,7 @@ def application(session: Session, shell: Shell, *, names: tuple[str, ...] = ()) 
     )
     app.state.feed = feed
     app.include_router(api(session, feed))
+    app.include_router(figures(session))
     app.include_router(page.router())
     serve_assets(app, assets())
     app.add_middleware(Doors, names=names)
@@ -119,6 +122,7 @@ def serve(
     try:
         app = application(session, shell, names=names_of(host))
         mount_judging(app, [entry.entry_id for entry in opened.entries])
+        mount_agreement(app, opened)
         if runs is not None:
             mount_runs(app, runs)
             runs.library.start()

@@ -31,7 +31,8 @@ from c2nav_engine.experiments.statistics.orders import (
     repetition_stability,
 )
 
-KINDS = ("human-human", "human-model", "model-model")
+KINDS = ("human-human", "human-model", "model-model", "privileged")
+"""Of pairs; a ranker that knows the truth makes its pairs privileged, whoever the other one is."""
 ALL = "all"
 """Stands for every slot together."""
 
@@ -41,7 +42,7 @@ class Agreement:
     """One row: a pair of raters, or all pairs of a kind, on one slot or on all.
 
     Attributes:
-        kind: "human-human", "human-model" or "model-model".
+        kind: One of `KINDS`.
         a: First rater; "" for all pairs of the kind.
         b: Second rater.
         slot: Decision slot, or "all".
@@ -90,28 +91,19 @@ class OrderEffects:
 
 
 @dataclass(frozen=True, slots=True)
-class _Pair:
+class Pair:
+    """Two answers to one question."""
+
     a: Answer
     b: Answer
 
 
 def agreements(answers: Answers, *, seed: int = 0) -> list[Agreement]:
     """Every kind of pair together, then every pair; each over all slots and slot by slot."""
-    by_rater: dict[Rater, dict[str, Answer]] = {}
-    for answer in answers.given:
-        by_rater.setdefault(answer.rater, {})[answer.question] = answer
-    raters = sorted(by_rater, key=lambda rater: (not rater.human, rater.name))
-    pairs = {
-        (a, b): [
-            _Pair(by_rater[a][question], by_rater[b][question])
-            for question in by_rater[a]
-            if question in by_rater[b]
-        ]
-        for a, b in combinations(raters, 2)
-    }
+    pairs = pairs_of(answers)
     rows: list[Agreement] = []
     for kind in KINDS:
-        mine = {names: found for names, found in pairs.items() if _kind(*names) == kind and found}
+        mine = {names: found for names, found in pairs.items() if kind_of(*names) == kind and found}
         together = [pair for found in mine.values() for pair in found]
         if len(mine) > 1:
             rows += _rows((kind, "", ""), together, seed)
@@ -120,11 +112,33 @@ def agreements(answers: Answers, *, seed: int = 0) -> list[Agreement]:
     return rows
 
 
-def _kind(a: Rater, b: Rater) -> str:
-    return KINDS[2 - a.human - b.human]
+def pairs_of(answers: Answers) -> dict[tuple[Rater, Rater], list[Pair]]:
+    """Every two raters, people first → their answers to what both were asked."""
+    by_rater: dict[Rater, dict[str, Answer]] = {}
+    for answer in answers.given:
+        by_rater.setdefault(answer.rater, {})[answer.question] = answer
+    raters = sorted(by_rater, key=standing)
+    return {
+        (a, b): [
+            Pair(by_rater[a][question], by_rater[b][question])
+            for question in by_rater[a]
+            if question in by_rater[b]
+        ]
+        for a, b in combinations(raters, 2)
+    }
 
 
-def _rows(names: tuple[str, str, str], pairs: Sequence[_Pair], seed: int) -> list[Agreement]:
+def standing(rater: Rater) -> tuple[bool, bool, str]:
+    """Raters in the order in which they stand: people, models, and who knows the truth."""
+    return (rater.privileged, not rater.human, rater.name)
+
+
+def kind_of(a: Rater, b: Rater) -> str:
+    """Which of `KINDS` a pair is; a model never comes before a person."""
+    return KINDS[3 if a.privileged or b.privileged else 2 - a.human - b.human]
+
+
+def _rows(names: tuple[str, str, str], pairs: Sequence[Pair], seed: int) -> list[Agreement]:
     slots = sorted({pair.a.slot for pair in pairs})
     shares = {ALL: list(pairs)} | {
         slot: [pair for pair in pairs if pair.a.slot == slot] for slot in slots
@@ -134,11 +148,11 @@ def _rows(names: tuple[str, str, str], pairs: Sequence[_Pair], seed: int) -> lis
     return [_row(names, slot, found, seed) for slot, found in shares.items()]
 
 
-def _row(names: tuple[str, str, str], slot: str, pairs: Sequence[_Pair], seed: int) -> Agreement:
+def _row(names: tuple[str, str, str], slot: str, pairs: Sequence[Pair], seed: int) -> Agreement:
     elected = [pair for pair in pairs if None not in (pair.a.winner, pair.b.winner)]
     kind, a, b = names
     # People and a model together are no raters of one kind: only a pair of them has its α.
-    alike = bool(a) or kind != "human-model"
+    alike = bool(a) or kind not in ("human-model", "privileged")
     return Agreement(
         kind=kind,
         a=a,
@@ -155,13 +169,13 @@ def _row(names: tuple[str, str, str], slot: str, pairs: Sequence[_Pair], seed: i
     )
 
 
-def _tau(pair: _Pair) -> float | None:
+def _tau(pair: Pair) -> float | None:
     a, b = tiers_to_ranks(pair.a.tiers), tiers_to_ranks(pair.b.tiers)
     return kendall_tau(a, b) if a and a.keys() == b.keys() else None
 
 
 def _mean(
-    pairs: Iterable[_Pair], value: Callable[[_Pair], float | None], seed: int
+    pairs: Iterable[Pair], value: Callable[[Pair], float | None], seed: int
 ) -> Interval | None:
     clusters: dict[str, list[float]] = {}
     for pair in pairs:
@@ -174,7 +188,7 @@ Units = dict[str, list[list[str]]]
 """Episode → its questions → the winners that were given there."""
 
 
-def _units(pairs: Sequence[_Pair]) -> Units:
+def _units(pairs: Sequence[Pair]) -> Units:
     """Each question once, with one winner a rater."""
     labels: dict[tuple[str, str], dict[Rater, str]] = {}
     for pair in pairs:
@@ -227,7 +241,7 @@ def order_effects(answers: Answers, *, seed: int = 0) -> list[OrderEffects]:
     """Every rater, over all slots and slot by slot."""
     rows: list[OrderEffects] = []
     raters = {showing.rater for showing in answers.showings}
-    for rater in sorted(raters, key=lambda rater: (not rater.human, rater.name)):
+    for rater in sorted(raters, key=standing):
         mine = [showing for showing in answers.showings if showing.rater == rater]
         for slot in (ALL, *sorted({showing.slot for showing in mine})):
             shown = [one.shown for one in mine if slot in (ALL, one.slot)]

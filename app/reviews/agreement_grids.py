@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from app.reviews.agreement import Agreement, OrderEffects, agreements, order_effects
+from app.reviews.agreement import KINDS, Agreement, OrderEffects, agreements, order_effects
 from app.reviews.reading import read_answers
 from app.reviews.store import FILE
 from c2nav_engine.experiments.report.content import Annex
@@ -28,7 +28,7 @@ def human_study(runs: Sequence[Path], *, seed: int = 0) -> Annex | None:
     people = sorted({each.rater.name for each in answers.given if each.rater.human})
     if not people:
         return None
-    pairs = [row for row in agreements(answers, seed=seed) if row.kind != "model-model"]
+    pairs = [row for row in agreements(answers, seed=seed) if row.kind in KINDS[:2]]
     orders = [row for row in order_effects(answers, seed=seed) if row.rater.human]
     note = (
         f"{len(people)} people on {len({each.question for each in answers.given})} recorded "
@@ -56,7 +56,7 @@ def agreement_grid(rows: Sequence[Agreement]) -> Grid:
                     _words(row.tau),
                     _words(row.alpha),
                 ),
-                block=("human-human", "human-model", "model-model").index(row.kind),
+                block=KINDS.index(row.kind),
             )
             for row in rows
         ),

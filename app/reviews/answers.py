@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
 
 from c2nav_engine.contract.outcome import Key
 from c2nav_engine.experiments.statistics.orders import Shown
@@ -15,10 +17,12 @@ class Rater:
     Attributes:
         name: Pseudonym, or the ranker's name.
         human: Whether it is a person.
+        privileged: Whether it knows the truth: then it stands apart from all others.
     """
 
     name: str
     human: bool
+    privileged: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,13 +61,28 @@ class Showing:
 
 
 @dataclass(frozen=True, slots=True)
+class Place:
+    """Where a question was asked.
+
+    Attributes:
+        trace: The trace's file.
+        decision: Decision number in that trace.
+    """
+
+    trace: Path
+    decision: int
+
+
+@dataclass(frozen=True, slots=True)
 class Answers:
     """Everything that was read.
 
     Attributes:
         given: One answer a rater and question: the first one where several were given.
         showings: Every presentation.
+        places: Question → where it was asked, as far as traces were read.
     """
 
     given: tuple[Answer, ...]
     showings: tuple[Showing, ...]
+    places: Mapping[str, tuple[Place, ...]] = field(default_factory=dict[str, tuple[Place, ...]])

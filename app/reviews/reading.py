@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from app.reviews.answers import Answer, Answers, Rater, Showing
+from app.reviews.answers import Answer, Answers, Place, Rater, Showing
 from app.reviews.events import Event, Kind
 from app.reviews.questions import question_id
 from app.reviews.state import standing
@@ -14,6 +15,7 @@ from app.reviews.store import FILE, read_lines, shared_events, store_of
 from c2nav_engine.contract.outcome import Answered, Key, Ordering, Tie
 from c2nav_engine.contract.presentation import ORDINAL_FORMS
 from c2nav_engine.errors import UsageError
+from c2nav_engine.experiments.rankers import RANKERS
 from c2nav_engine.experiments.statistics.orders import Shown
 from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.runner.exchange import Exchange
@@ -29,18 +31,31 @@ def read_answers(what: Sequence[Path]) -> Answers:
     Raises:
         UsageError: Something is neither, or holds no answer.
     """
-    given: list[Answer] = []
-    showings: list[Showing] = []
     names: Names = {}
     # Re-evaluations come last: what they ask about is named by the runs and reviews.
-    for path in sorted(what, key=lambda path: path.suffix == ".parquet"):
-        found = _of_run(path, names) if path.is_dir() else _of_file(path, names)
-        given += found.given
-        showings += found.showings
-    if not given:
+    found = [
+        _of_run(path, names) if path.is_dir() else _of_file(path, names)
+        for path in sorted(what, key=lambda path: path.suffix == ".parquet")
+    ]
+    together = merged(found)
+    if not together.given:
         message = f"expected answers in {', '.join(map(str, what)) or 'runs or files'}, found none"
         raise UsageError(message)
-    return Answers(_first_given(given), tuple(showings))
+    return together
+
+
+def merged(found: Iterable[Answers]) -> Answers:
+    """Answers of several sources; of several to one question by one rater the first counts."""
+    parts = tuple(found)
+    places: dict[str, tuple[Place, ...]] = {}
+    for part in parts:
+        for question, here in part.places.items():
+            places[question] = (*places.get(question, ()), *here)
+    return Answers(
+        _first_given(answer for part in parts for answer in part.given),
+        tuple(showing for part in parts for showing in part.showings),
+        places,
+    )
 
 
 def _first_given(given: Iterable[Answer]) -> tuple[Answer, ...]:
@@ -51,8 +66,14 @@ def _first_given(given: Iterable[Answer]) -> tuple[Answer, ...]:
 
 
 def _of_run(run: Path, names: Names) -> Answers:
+    return merged([of_traces(run, names), of_people(run, names)])
+
+
+def of_traces(run: Path, names: Names) -> Answers:
+    """What models answered in a run's traces; adds to `names`."""
     given: list[Answer] = []
     showings: list[Showing] = []
+    places: dict[str, tuple[Place, ...]] = {}
     for path in sorted((run / "traces").glob("*.mcap")):
         with open_trace(path) as trace:
             for exchange in trace.decisions():
@@ -60,13 +81,19 @@ def _of_run(run: Path, names: Names) -> Answers:
                     answer, shown = _of_model(exchange, trace)
                     given.append(answer)
                     showings += shown
-                    names[trace.sha256, exchange.decision or 0] = answer.question
-    if (run / FILE).is_file():
-        with store_of(run) as store:
-            people = of_events(shared_events(store), names)
-        given += people.given
-        showings += people.showings
-    return Answers(tuple(given), tuple(showings))
+                    number = exchange.decision or 0
+                    names[trace.sha256, number] = answer.question
+                    here = (*places.get(answer.question, ()), Place(path, number))
+                    places[answer.question] = here
+    return Answers(tuple(given), tuple(showings), places)
+
+
+def of_people(run: Path, names: Names) -> Answers:
+    """What people said about a run, under their pseudonyms; adds to `names`."""
+    if not (run / FILE).is_file():
+        return Answers((), ())
+    with store_of(run) as store:
+        return of_events(shared_events(store), names)
 
 
 def _of_file(path: Path, names: Names) -> Answers:
@@ -94,7 +121,9 @@ def _of_reevaluation(rows: Sequence[Mapping[str, Any]], names: Names) -> Answers
         question = names.get(place, f"{place[0]}/{place[1]}")
         episode = f"{row['scene_id']}/{row['episode_id']}"
         recorded, ranker = row["recorded_ranker"], row["ranker"]
-        rater = Rater(f"{ranker}, again" if ranker == recorded else ranker, human=False)
+        rater = _recorded_rater(ranker)
+        if ranker == recorded:
+            rater = replace(rater, name=f"{ranker}, again")
         shown = tuple(row["keys"])
         facts = (question, episode, row["slot"], tuple(sorted(shown)))
         tiers = tuple(tuple(tier) for tier in row["ranking"] or ())
@@ -107,7 +136,12 @@ def _of_reevaluation(rows: Sequence[Mapping[str, Any]], names: Names) -> Answers
 
 
 def _recorded_rater(ranker: str) -> Rater:
-    return Rater(ranker, human=ranker.startswith("human"))
+    known = RANKERS.get(ranker)
+    return Rater(
+        ranker,
+        human=ranker.startswith("human"),
+        privileged=known is not None and known.privileged,
+    )
 
 
 def of_events(events: Iterable[Event], names: Names) -> Answers:

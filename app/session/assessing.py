@@ -13,10 +13,11 @@ from app.session.decisions import Decision
 from app.session.opened import Opening
 from app.session.snapshot import Assessment
 from app.session.story import Story
+from c2nav_engine.contract.outcome import Key
 from c2nav_engine.contract.question import Slot
 from c2nav_engine.errors import C2NavError
 from c2nav_engine.experiments.regret import controller_fault, regret_m
-from c2nav_engine.experiments.truth import Course, course_of, goal_after_m, true_leg
+from c2nav_engine.experiments.truth import Course, best_view, course_of, goal_after_m, true_leg
 from c2nav_engine.geometry import Pose
 from c2nav_engine.metrics.off_path import off_path_m
 from c2nav_engine.navigator.config import LoopConfig
@@ -49,6 +50,21 @@ class Assessor:
             for decision in story.decisions
             if not decision.pending and decision.number not in done
         }
+
+    def best_offered(self, story: Story) -> dict[int, Key]:
+        """Decision → the offered alternative whose bundle ends nearest to the goal, where known."""
+        course = self._ready()
+        if course is None:
+            return {}
+        found: dict[int, Key] = {}
+        for decision in story.decisions:
+            if decision.slot in _MOVING and decision.question is not None:
+                pose = story.track.footsteps[decision.step].pose
+                after_m = goal_after_m(course, pose, decision.offered)
+                best = best_view(after_m, decision.offered)
+                if best is not None:
+                    found[decision.number] = best
+        return found
 
     def _ready(self) -> Course | None:
         if self._course is None and not self._hopeless:

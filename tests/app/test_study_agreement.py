@@ -98,6 +98,18 @@ def test_alpha_stands_for_single_slots_and_pairs_alone():
     assert {row.kind for row in rows} == {"human-human", "human-model"}
 
 
+def test_who_knows_the_truth_is_never_pooled_with_a_model():
+    oracle = Rater("oracle", human=False, privileged=True)
+    rows = agreements(made_up((ANN, oracle, MODEL)))
+    kinds = {(row.a, row.b): row.kind for row in rows if row.a}
+    assert kinds == {
+        ("P1", "model"): "human-model",
+        ("P1", "oracle"): "privileged",
+        ("model", "oracle"): "privileged",
+    }
+    assert all(row.kind == "privileged" and row.alpha is None for row in rows if not row.a)
+
+
 def test_intervals_are_drawn_over_episodes():
     units = {f"e{k}": [["l", "l"], ["r", "r"], ["l", "r" if k % 3 else "l"]] for k in range(12)}
     interval = alpha_interval(units, seed=1)
