@@ -23,11 +23,13 @@ from c2nav_engine.experiments.report.grids import (
     comparison_grid,
     slot_grid,
     table_grid,
+    turning_grid,
 )
 from c2nav_engine.experiments.report.reading import Run
 from c2nav_engine.experiments.report.reported import OPENNAV_100_SHA256
 from c2nav_engine.experiments.report.systems import Section, sections_of
 from c2nav_engine.experiments.report.tables import Table, tables_of
+from c2nav_engine.experiments.report.turning import Turnings, turnings_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +45,7 @@ class Chapter:
         behaviours: By configuration.
         slots: By system and decision slot.
         slots_note: Which traces are missing.
+        turnings: Turning points of the failures, where they were looked for.
         notes: What a reader must know first.
     """
 
@@ -54,6 +57,7 @@ class Chapter:
     behaviours: tuple[Behaviour, ...]
     slots: tuple[SlotUse, ...]
     slots_note: str
+    turnings: tuple[Turnings, ...]
     notes: tuple[str, ...]
 
     @property
@@ -75,6 +79,8 @@ class Chapter:
         yield behaviour_grid(self.behaviours)
         if self.slots:
             yield slot_grid(self.slots, self.slots_note)
+        if self.turnings:
+            yield turning_grid(self.turnings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +131,7 @@ def _chapter(section: Section, place: int) -> Chapter:
         behaviours=behaviours_of(section),
         slots=slots,
         slots_note=slots_note,
+        turnings=turnings_of(section),
         notes=tuple(_notes(section)),
     )
 

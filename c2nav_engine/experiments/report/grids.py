@@ -12,8 +12,10 @@ from dataclasses import dataclass, field
 from c2nav_engine.experiments.report.behaviour import COUNTS, Behaviour, SlotUse
 from c2nav_engine.experiments.report.comparing import Comparison
 from c2nav_engine.experiments.report.tables import Beside, Cell, Line, Measure, Table
+from c2nav_engine.experiments.report.turning import Turnings
 from c2nav_engine.experiments.statistics.intervals import Interval
 from c2nav_engine.experiments.statistics.paired import PairedDifference
+from c2nav_engine.experiments.turning.summary import VERDICTS
 
 NONE = "–"
 
@@ -160,6 +162,24 @@ def slot_grid(uses: Sequence[SlotUse], note: str) -> Grid:
     return Grid("slots", "Decision slots", heads, rows, 2, (note,) if note else ())
 
 
+def turning_grid(turnings: Sequence[Turnings]) -> Grid:
+    """What would have saved the failures, each in one class."""
+    heads = ("System", "Variant", "Failures", "Analysed", "By slot", *VERDICTS)
+    return Grid(
+        "turning",
+        "Turning points of the failures",
+        heads,
+        tuple(GridRow(_turning(each)) for each in turnings),
+        text_columns=2,
+        notes=(
+            "Counts of the analysed failures, each in one class, with their share in percent and "
+            "95 % Wilson intervals. One answer away: one changed answer alone led to success in "
+            "every run, and the unchanged decision in none. By slot: where that answer was given. "
+            "Lost by the controller: even a noiseless observer fails (privileged).",
+        ),
+    )
+
+
 # ---------------------------------------------------------------- words of one cell
 
 
@@ -282,6 +302,23 @@ def _slot(use: SlotUse) -> tuple[str, ...]:
         _plain(use.tokens_out, 0),
         _plain(use.cost_usd, 4),
     )
+
+
+def _turning(each: Turnings) -> tuple[str, ...]:
+    summary = each.summary
+    slots = (f"{slot.value} {_counted(rate)}" for slot, rate in summary.by_slot.items())
+    return (
+        each.system,
+        " = ".join(each.variants),
+        str(summary.failures),
+        str(summary.analysed),
+        ", ".join(slots) or NONE,
+        *(_counted(summary.verdicts[name]) for name in VERDICTS),
+    )
+
+
+def _counted(rate: Interval) -> str:
+    return f"{round(rate.estimate * rate.n)}: {_share(rate)}"
 
 
 def _plain(value: float | None, digits: int) -> str:

@@ -11,21 +11,24 @@ from c2nav_engine.experiments.report.behaviour import Behaviour, SlotUse
 from c2nav_engine.experiments.report.comparing import Comparison
 from c2nav_engine.experiments.report.content import Chapter, Report
 from c2nav_engine.experiments.report.tables import Beside, Line, Table
+from c2nav_engine.experiments.report.turning import Turnings
 from c2nav_engine.experiments.statistics.intervals import Interval
 from c2nav_engine.experiments.statistics.paired import PairedDifference
+from c2nav_engine.experiments.turning.flips import TURNING
 
 Value = str | int | float | None
 Record = Mapping[str, Value]
 
 
 def write_csv(report: Report, folder: Path) -> list[Path]:
-    """Write `tables.csv`, `beside.csv`, `comparisons.csv`, `behaviour.csv` and `slots.csv`."""
+    """Write one file of each kind that the report holds, `tables.csv` to `turning.csv`."""
     makers = {
         "tables": _table_records,
         "beside": _beside_records,
         "comparisons": _comparison_records,
         "behaviour": _behaviour_records,
         "slots": _slot_records,
+        "turning": _turning_records,
     }
     paths: list[Path] = []
     for name, make in makers.items():
@@ -176,6 +179,28 @@ def _slot_record(use: SlotUse) -> Record:
         "tokens_in": use.tokens_in,
         "tokens_out": use.tokens_out,
         "cost_usd": use.cost_usd,
+    }
+
+
+def _turning_records(chapter: Chapter) -> Iterator[Record]:
+    for each in chapter.turnings:
+        for verdict, rate in each.summary.verdicts.items():
+            yield _turning_record(each, verdict, "", rate)
+        for slot, rate in each.summary.by_slot.items():
+            yield _turning_record(each, TURNING, slot.value, rate)
+
+
+def _turning_record(each: Turnings, verdict: str, slot: str, rate: Interval) -> Record:
+    return {
+        "system": each.system,
+        "variant": " = ".join(each.variants),
+        "failures": each.summary.failures,
+        "analysed": each.summary.analysed,
+        "verdict": verdict,
+        "slot": slot,
+        "count": round(rate.estimate * rate.n),
+        "share": rate.estimate,
+        **_ends(rate),
     }
 
 
