@@ -14,7 +14,7 @@ from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.asking import asking_from
 from c2nav_engine.rankers.capabilities import PRESETS, Preset
 from c2nav_engine.rankers.completing import completion_through
-from c2nav_engine.rankers.protocol import Adapter
+from c2nav_engine.rankers.protocol import Adapter, Told
 from c2nav_engine.rankers.wrapper import AskingRanker
 from c2nav_engine.runner.opening import Seat, SeatFor
 
@@ -78,8 +78,11 @@ def _shared(adapter: Callable[[Options], Adapter]) -> Callable[[Options], SeatFo
 
     def make(options: Options) -> SeatFor:
         asking, rest = asking_from(options)
-        ranker = AskingRanker(adapter(rest), asking)
-        return lambda _stage: Seat(ranker, ranker.name, options)
+        answering = adapter(rest)
+        ranker = AskingRanker(answering, asking)
+        # Defaults and a preset's choices stand in the record too: they shape the answers.
+        told = {**options, **answering.options} if isinstance(answering, Told) else options
+        return lambda _stage: Seat(ranker, ranker.name, told)
 
     return make
 

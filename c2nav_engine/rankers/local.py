@@ -54,6 +54,17 @@ class Local:
         """Model, device and picture size."""
         return repr(self._model.settings)
 
+    @property
+    def options(self) -> dict[str, str]:
+        """The settings as options; `device` is the one that was chosen."""
+        settings = self._model.settings
+        return {
+            "model": settings.model,
+            "device": self._model.device,
+            "mode": self._mode,
+            "image_px": str(settings.image_px),
+        }
+
     def answer(self, prompt: Prompt) -> Reply:
         """One query."""
         return self.answer_all([prompt])[0]

@@ -60,6 +60,11 @@ class ServedModel(ABC):
         """The settings, which name the key's variable but never hold the key."""
         return repr(self._settings)
 
+    @property
+    def options(self) -> dict[str, str]:
+        """The settings as options, defaults and a preset's choices included."""
+        return self._settings.as_options()
+
     def start(self) -> tuple[str, ...]:
         """Try the server out; returns warnings."""
         return probe(self.send) if self._settings.probe else ()

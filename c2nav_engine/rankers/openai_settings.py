@@ -61,6 +61,25 @@ class ServerSettings:
             raise UsageError(f"{message}. Export it, or give another name as key_env")
         return key
 
+    def as_options(self) -> dict[str, str]:
+        """Every setting as the option that gives it, for the record."""
+        kept = {name: str(getattr(self, name)) for name in _OPTIONS}
+        return {name: text for name, text in kept.items() if text}
+
+
+_OPTIONS = (
+    "base_url",
+    "model",
+    "key_env",
+    "sampling",
+    "effort",
+    "detail",
+    "image_px",
+    "schema",
+    "answer_tokens",
+    "timeout_s",
+)
+
 
 def settings_from(ranker: str, options: Options) -> ServerSettings:
     """Settings out of `KEY=VALUE` options; a preset's name as `ranker` fills in the rest."""

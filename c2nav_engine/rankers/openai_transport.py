@@ -3,11 +3,12 @@
 The client's own retries are off: the wrapper owns them, and an exhausted quota arrives as a 429
 that the client would retry for ever. Three things stop a run: a rejected key (401, 403), an
 exhausted quota and a refused connection. The key goes into the Authorization header and nowhere
-else; messages of the server are scrubbed of it before they are kept.
+else; whatever the server says is scrubbed of it before it is kept.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from typing import cast
 
@@ -55,7 +56,7 @@ class Transport:
             answer = None
         if not isinstance(answer, Mapping):
             return Reply(outcome=TransportFailure("the server's answer is no JSON object"))
-        return cast("Json", answer)
+        return self._without_key(cast("Json", answer))
 
     def close(self) -> None:
         """Close the connections."""
@@ -89,8 +90,17 @@ class Transport:
         return Reply(outcome=failure, retry_after_s=_retry_after_s(error))
 
     def _plain(self, error: openai.OpenAIError) -> str:
-        words = " ".join(str(error).split())
-        return words.replace(self._key, "[key]")[:_LONGEST_MESSAGE]
+        return self._scrubbed(" ".join(str(error).split()))[:_LONGEST_MESSAGE]
+
+    def _without_key(self, answer: Json) -> Json:
+        """The answer as it came, but for a server that repeats the key."""
+        text = json.dumps(answer)
+        scrubbed = self._scrubbed(text)
+        return answer if scrubbed == text else json.loads(scrubbed)
+
+    def _scrubbed(self, text: str) -> str:
+        # Without a key a placeholder is sent, which is a word like any other.
+        return text.replace(self._key, "[key]") if self._settings.key_env else text
 
 
 def _retry_after_s(error: openai.APIStatusError) -> float:

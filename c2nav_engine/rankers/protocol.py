@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from c2nav_engine.contract.prompt import Prompt, Ranked, Reply
@@ -53,6 +53,16 @@ class Fingerprinted(Protocol):
     @property
     def fingerprint(self) -> str:
         """Every such setting (model, sampling, picture size) as text; never a key."""
+        ...
+
+
+@runtime_checkable
+class Told(Protocol):
+    """An adapter whose record says how it was asked, whatever was left to its defaults."""
+
+    @property
+    def options(self) -> Mapping[str, str]:
+        """Options that make the same adapter again; never a key."""
         ...
 
 

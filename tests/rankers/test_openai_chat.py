@@ -282,6 +282,16 @@ def test_a_preset_fills_in_model_and_server(chat: Build, monkeypatch: pytest.Mon
     small.close()
 
 
+def test_a_record_says_how_a_model_was_asked_defaults_included(chat: Build):
+    adapter = chat(image_px="64")
+    told = adapter.options
+    assert (told["sampling"], told["image_px"], told["answer_tokens"]) == ("greedy", "64", "200")
+    assert told["key_env"] == CANARY_ENV and CANARY not in repr(told)
+    again = OpenAIChat.from_options({**told, "probe": "false"})
+    assert again.fingerprint == adapter.fingerprint
+    again.close()
+
+
 def test_the_probe_warns_and_the_run_goes_on(httpserver: HTTPServer, chat: Build, caplog):
     httpserver.expect_request(PATH).respond_with_json({**completion("A"), "usage": None})
     ranker = AskingRanker(chat(probe="true"))

@@ -87,6 +87,7 @@ def test_an_episode_runs_end_to_end_over_http_with_pictures(
     assert int(row["tokens"] or 0) > 0 and float(row["latency_s"] or 0) > 0
 
     trace = read_trace(task.trace(tmp_path))
+    assert trace.header.ranker_options["sampling"] == "greedy"
     queries = [q for e in trace.exchanges if e.ranked is not None for q in e.ranked.queries]
     assert len(queries) == row["queries"]
     assert any(isinstance(part, Picture) for query in queries for part in query.prompt.parts)
