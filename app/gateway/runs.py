@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import AsyncGenerator, Callable, Iterable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
@@ -17,14 +18,16 @@ from app.gateway.alone import listen, names_of, serve_alone
 from app.gateway.assets import assets, serve_assets
 from app.gateway.doors import Doors
 from app.pages.cases import cases_page
+from app.pages.compare import compare_page, pair_page
 from app.pages.index import curation, query
 from app.pages.index.refresh import EXPORTS
-from app.pages.library import Library
+from app.pages.library import Library, OpenedTraces
 from app.pages.run import run_page, stamp
 from app.session.story import Story
 from c2nav_engine.errors import C2NavError, InputError
 
 _SHA = "^[0-9a-f]{64}$"
+_IS_SHA = re.compile(_SHA)
 Digest = Annotated[str, Field(pattern=_SHA)]
 Digests = Annotated[tuple[Digest, ...], Field(min_length=1, max_length=1000)]
 Words = Annotated[str, Field(min_length=1, max_length=60)]
@@ -99,6 +102,7 @@ def run_pages(pages: RunPages) -> APIRouter:
     """Routes of the pages about the runs of a library."""
     router = APIRouter(include_in_schema=False)
     _reading(router, pages.library)
+    _comparing(router, pages.library)
     _changing(router, pages)
     return router
 
@@ -130,6 +134,27 @@ def _reading(router: APIRouter, library: Library) -> None:
             raise HTTPException(404, "this trace holds no pictures")
         headers = {"Cache-Control": _FOREVER, "ETag": f'"{found.sha256}"'}
         return Response(found.jpeg, media_type="image/jpeg", headers=headers)
+
+
+def _comparing(router: APIRouter, library: Library) -> None:
+    opened = OpenedTraces(library)
+
+    @router.get("/compare")
+    def compare(a: str = "", b: str = "", cell: str = "") -> Response:
+        if _IS_SHA.fullmatch(a) and _IS_SHA.fullmatch(b):
+            return _page(lambda: pair_page(library, a, b))
+        return _page(lambda: compare_page(library, a, b, cell=cell))
+
+    @router.get("/compare/picture/{trace}/{sha256}.jpg")
+    def picture(
+        trace: Annotated[str, Path(pattern=_SHA)], sha256: Annotated[str, Path(pattern=_SHA)]
+    ) -> Response:
+        try:
+            jpeg = opened.picture(trace, sha256)
+        except C2NavError as error:
+            raise HTTPException(404, str(error)) from error
+        headers = {"Cache-Control": _FOREVER, "ETag": f'"{sha256}"'}
+        return Response(jpeg, media_type="image/jpeg", headers=headers)
 
 
 def _changing(router: APIRouter, pages: RunPages) -> None:
@@ -176,7 +201,7 @@ def _changing(router: APIRouter, pages: RunPages) -> None:
 def _page(make: Callable[[], str]) -> Response:
     try:
         return HTMLResponse(make())
-    except InputError as error:
+    except C2NavError as error:
         raise HTTPException(404, str(error)) from error
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import logging
 import threading
+from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,12 +20,16 @@ from c2nav_engine.contract.question import Picture
 from c2nav_engine.errors import C2NavError, InputError
 from c2nav_engine.experiments.ledger import states_of
 from c2nav_engine.navigator.requests import Ask
-from c2nav_engine.runner.recorded import open_trace
+from c2nav_engine.runner.recorded import OpenTrace, open_trace
 
 log = logging.getLogger(__name__)
 
 PAUSE_S = 5.0
 """Between two looks at the folder [C]."""
+
+
+KEPT_OPEN = 4
+"""Traces whose pictures are at hand [C]: two pairs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,3 +170,22 @@ class Library:
             if candidate.picture is not None and candidate.picture.jpeg
         }
         return held.get(winner) or next(iter(held.values()), None)
+
+
+class OpenedTraces:
+    """Pictures of a few traces at a time, kept open while somebody walks along them."""
+
+    def __init__(self, library: Library) -> None:
+        self._library = library
+        self._lock = threading.Lock()
+        self._open: OrderedDict[str, OpenTrace] = OrderedDict()
+
+    def picture(self, trace: str, sha256: str) -> bytes:
+        """A picture of a trace by both digests; raises `InputError` or `TraceError`."""
+        with self._lock:
+            if trace not in self._open:
+                self._open[trace] = open_trace(self._library.trace(self._library.case(trace)))
+                while len(self._open) > KEPT_OPEN:
+                    self._open.popitem(last=False)[1].close()
+            self._open.move_to_end(trace)
+            return self._open[trace].picture(sha256)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from c2nav_engine.experiments.tags.account import Account
@@ -16,13 +16,18 @@ _MARGIN = 6.0
 Spot = tuple[float, float]
 
 
-def drawing_of(account: Account) -> str:
-    """The map of an episode as JSON; (x, z) in metres, centimetres kept."""
+def drawing_of(account: Account, *, most: int = MOST_POINTS) -> str:
+    """The map of an episode as JSON; (x, z) in metres, centimetres kept.
+
+    Args:
+        account: The episode.
+        most: Corners that its way keeps.
+    """
     episode = account.header.episode
     way = [point.pose.position_m for point in account.way]
     return json.dumps(
         {
-            "way": _spots(_thinned(way)),
+            "way": _spots(_thinned(way, most)),
             "reference": _spots(episode.reference_path_m),
             "goal": _spots([episode.goal_m])[0] if episode.goal_m else None,
             "radius_m": episode.goal_radius_m,
@@ -31,13 +36,13 @@ def drawing_of(account: Account) -> str:
     )
 
 
-def _thinned(points: Sequence[Point]) -> list[Point]:
-    """At most `MOST_POINTS` places, both ends among them; standing still counts once."""
+def _thinned(points: Sequence[Point], most: int) -> list[Point]:
+    """At most that many places, both ends among them; standing still counts once."""
     moved = [b for a, b in zip([None, *points], points, strict=False) if a != b]
-    if len(moved) <= MOST_POINTS:
+    if len(moved) <= most:
         return moved
     last = len(moved) - 1
-    return [moved[round(place * last / (MOST_POINTS - 1))] for place in range(MOST_POINTS)]
+    return [moved[round(place * last / (most - 1))] for place in range(most)]
 
 
 def _spots(points: Sequence[Point]) -> list[Spot]:
@@ -55,6 +60,7 @@ class Map:
         end: Where it ended.
         goal: Centre of the goal; None without one.
         radius: Success radius.
+        at: Where a place (x, z) in metres lies.
     """
 
     way: str
@@ -63,15 +69,16 @@ class Map:
     end: Spot
     goal: Spot | None
     radius: float
+    at: Callable[[Sequence[float]], Spot]
 
 
-def map_of(drawing: str, *, width: float, height: float) -> Map | None:
-    """Fit a drawing into a box of pixels; None where there is none."""
+def map_of(drawing: str, *, width: float, height: float, within: Sequence[Spot] = ()) -> Map | None:
+    """Fit a drawing, and whatever else must lie `within`, into a box of pixels; None for none."""
     if not drawing:
         return None
     facts = json.loads(drawing)
     way, reference, goal = facts["way"], facts["reference"], facts["goal"]
-    everything = [*way, *reference, *([goal] if goal else [])]
+    everything = [*way, *reference, *([goal] if goal else []), *within]
     low = [min(spot[axis] for spot in everything) for axis in (0, 1)]
     extent = [max(spot[axis] for spot in everything) - low[axis] for axis in (0, 1)]
     scale = min(
@@ -96,4 +103,5 @@ def map_of(drawing: str, *, width: float, height: float) -> Map | None:
         end=at(way[-1]),
         goal=at(goal) if goal else None,
         radius=round(scale * facts["radius_m"], 1),
+        at=at,
     )

@@ -102,10 +102,12 @@ def _decided_differently(a: Exchange, b: Exchange) -> _Found | None:
     if not (isinstance(one, Ask) and isinstance(other, Ask)):
         same = difference(_unasked(a), _unasked(b)) is None and type(one) is type(other)
         return None if same else (Part.QUESTION, ("", _act_words(a), _act_words(b)))
+    if one.question.slot is not other.question.slot:
+        return Part.QUESTION, ("", _act_words(a), _act_words(b))
     asked = difference(*(replace(ask.question, shuffle_seed=0) for ask in (one, other)))
     if asked is not None:
         return Part.QUESTION, asked
-    said = [said_words(_answer(exchange)) for exchange in (a, b)]
+    said = [said_words(answer_of(exchange)) for exchange in (a, b)]
     return None if said[0] == said[1] else (Part.ANSWER, ("", said[0], said[1]))
 
 
@@ -122,7 +124,8 @@ def _moved_differently(a: Exchange, b: Exchange) -> _Found | None:
     return None if walked is None else (Part.MOTION, walked)
 
 
-def _answer(exchange: Exchange) -> Answered | None:
+def answer_of(exchange: Exchange) -> Answered | None:
+    """What a question's exchange committed."""
     response = exchange.response
     return None if isinstance(response, Seen | Moved) else response
 
