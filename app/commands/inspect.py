@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -34,6 +35,9 @@ def inspect(
             help="Answers of `c2nav reeval` beside the recorded ones; repeat for more.",
         ),
     ] = (),
+    blind: Annotated[
+        bool, tyro.conf.arg(help="Start with answers covered; V shows one, and that is kept.")
+    ] = False,
     ranker: str = DEFAULT_RANKER,
     ranker_opt: RankerOptions = (),
     profile: str = "vlnce",
@@ -60,6 +64,7 @@ def inspect(
         serve_runs(pages_of(root, scenes), host=host, port=port, ready=_tell_pages)
         return 0
     opened = opened_traces(traces, setting, beside=with_) if traces else opened_source(setting)
+    opened = replace(opened, blind=blind)
     runs = None
     if root is not None:
         opened, runs = with_later_traces(opened, root, setting), pages_of(root, scenes)

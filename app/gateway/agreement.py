@@ -40,7 +40,8 @@ from app.reviews.agreement import (
     pairs_of,
 )
 from app.reviews.answers import Answers, Rater
-from app.reviews.reading import Names, merged, of_people, of_traces
+from app.reviews.audit import store_beside
+from app.reviews.reading import Names, merged, of_people, of_trace
 from app.reviews.store import FILE
 from app.reviews.truth import BestElected, best_elected, judging_of
 from app.session.opened import Opened
@@ -61,7 +62,8 @@ _GROUPS = {
 class AgreementDesk:
     """What the page is made from; safe to use from several threads.
 
-    Traces are read once. What people say is read again when their store has changed.
+    Every trace is read once; those that a run adds meanwhile are read when the page is asked for
+    again, and so is what people say, when their store has changed.
 
     Args:
         opened: What the inspector is open on: its entries are files of traces.
@@ -70,13 +72,14 @@ class AgreementDesk:
     def __init__(self, opened: Opened) -> None:
         self._opened = opened
         traces = [Path(entry.entry_id).resolve() for entry in opened.entries]
-        self.runs = tuple(sorted({path.parent.parent for path in traces}))
+        self.runs = tuple(sorted({store_beside(path).parent for path in traces}))
+        self._folders = sorted({path.parent for path in traces})
         self._entry_of = {
             path: entry.entry_id for path, entry in zip(traces, opened.entries, strict=True)
         }
         self._names: Names = {}
-        self._models: Answers | None = None
-        self._people: tuple[tuple[object, ...], Answers] | None = None
+        self._models: dict[Path, Answers] = {}
+        self._read: tuple[tuple[object, ...], Answers] | None = None
         self._rows: tuple[list[Agreement], list[OrderEffects]] = ([], [])
         self._best: dict[str, Key] | None = None
         self._lock = threading.Lock()
@@ -108,15 +111,18 @@ class AgreementDesk:
         return self._entry_of.get(trace.resolve(), "")
 
     def _answers(self) -> Answers:
-        if self._models is None:
-            self._models = merged(of_traces(run, self._names) for run in self.runs)
-        stamp = tuple(_stamp(run / f"{FILE}{end}") for run in self.runs for end in ("", "-wal"))
-        if self._people is None or self._people[0] != stamp:
-            people = merged(of_people(run, self._names) for run in self.runs)
-            answers = merged([self._models, people])
+        traces = [path for folder in self._folders for path in sorted(folder.glob("*.mcap"))]
+        said = (_stamp(run / f"{FILE}{end}") for run in self.runs for end in ("", "-wal"))
+        stamp = (len(traces), *said)
+        if self._read is None or self._read[0] != stamp:
+            for path in traces:
+                if path not in self._models:
+                    self._models[path] = of_trace(path, self._names)
+            people = [of_people(run, self._names) for run in self.runs]
+            answers = merged([*self._models.values(), *people])
             self._rows = (agreements(answers), order_effects(answers))
-            self._people = (stamp, answers)
-        return self._people[1]
+            self._read = (stamp, answers)
+        return self._read[1]
 
 
 class Asked(BaseModel):

@@ -66,25 +66,25 @@ def _first_given(given: Iterable[Answer]) -> tuple[Answer, ...]:
 
 
 def _of_run(run: Path, names: Names) -> Answers:
-    return merged([of_traces(run, names), of_people(run, names)])
+    traces = sorted((run / "traces").glob("*.mcap"))
+    return merged([*(of_trace(path, names) for path in traces), of_people(run, names)])
 
 
-def of_traces(run: Path, names: Names) -> Answers:
-    """What models answered in a run's traces; adds to `names`."""
+def of_trace(path: Path, names: Names) -> Answers:
+    """What a model answered in a finished trace; adds to `names`."""
     given: list[Answer] = []
     showings: list[Showing] = []
     places: dict[str, tuple[Place, ...]] = {}
-    for path in sorted((run / "traces").glob("*.mcap")):
-        with open_trace(path) as trace:
-            for exchange in trace.decisions():
-                if _asked(exchange):
-                    answer, shown = _of_model(exchange, trace)
-                    given.append(answer)
-                    showings += shown
-                    number = exchange.decision or 0
-                    names[trace.sha256, number] = answer.question
-                    here = (*places.get(answer.question, ()), Place(path, number))
-                    places[answer.question] = here
+    with open_trace(path) as trace:
+        for exchange in trace.decisions():
+            if _asked(exchange):
+                answer, shown = _of_model(exchange, trace)
+                given.append(answer)
+                showings += shown
+                number = exchange.decision or 0
+                names[trace.sha256, number] = answer.question
+                here = (*places.get(answer.question, ()), Place(path, number))
+                places[answer.question] = here
     return Answers(tuple(given), tuple(showings), places)
 
 

@@ -127,7 +127,7 @@ def test_what_people_add_shows_without_reading_traces_again(
     def never(*_: object) -> Answers:
         raise AssertionError("the traces were read again")
 
-    monkeypatch.setattr(gateway, "of_traces", never)
+    monkeypatch.setattr(gateway, "of_trace", never)
     assert "people 1" in words(page.get("/agreement").text)
     judge(study, bob, most=1)
     assert "people 2" in words(page.get("/agreement").text)
