@@ -6,6 +6,7 @@ import "./rank-strip.js";
 import "./timeline-bar.js";
 import "./image-pair.js";
 import "./wait-card.js";
+import "./figure.js";
 import { hovering } from "./hover.js";
 import { keys } from "./keys.js";
 import { restore, remember } from "./address.js";

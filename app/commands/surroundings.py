@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.figures.plan import Plan, floor_rings, rings_of
-from app.inspector.scene.cutting import CUT_M
-from app.inspector.scene.section import CELL_M, section_of
+from app.figures.plan import Plan
+from app.inspector.scene.ground import ground_of
 from app.session.story import Story
 from c2nav_engine.errors import NavMeshError, SceneError
 from c2nav_engine.runner.reshell import source_of_record
@@ -41,20 +40,4 @@ def surroundings_of(story: Story, scenes: Path | None) -> Surroundings:
         world = worlds.of(header.episode.scene_id)
     except (SceneError, NavMeshError) as error:
         return Surroundings(why_not=str(error))
-    heights_m = [footstep.pose.position_m[1] for footstep in story.track.footsteps]
-    floor = floor_rings(world.surface.triangles(), heights_m)
-    return Surroundings(
-        world.scene, world.surface, Plan(floor, _walls(world.scene, heights_m[0] + CUT_M))
-    )
-
-
-def _walls(scene: Scene, height_m: float) -> tuple[tuple[tuple[float, float], ...], ...]:
-    groups = [scene.vertices_m[scene.triangles[part.first : part.stop]] for part in scene.parts]
-    section = section_of(groups, height_m)
-    if section is None:
-        return ()
-    corner = (
-        section.centre_m[0] - section.size_m[0] / 2.0,
-        section.centre_m[1] - section.size_m[1] / 2.0,
-    )
-    return rings_of(section.rgba[:, :, 3] > 0, corner, CELL_M)
+    return Surroundings(world.scene, world.surface, ground_of(story, world.scene, world.surface))

@@ -26,6 +26,7 @@ from c2nav_engine.errors import C2NavError
 from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.runner.worlds import World
 from c2nav_engine.world.scene import Scene
+from c2nav_engine.world.surface import Surface
 
 log = logging.getLogger(__name__)
 
@@ -75,6 +76,7 @@ class Desk:
         self.commit_when_answered = False
         self.due_s = 0.0
         self.assessor: Assessor | None = None
+        self.floor: Callable[[], Surface] | None = None
         self.assessing = False
         self.world: Callable[[], World] | None = None
         self.searches: dict[str, Search] = {}
@@ -128,6 +130,7 @@ class Desk:
         if opening.scene is not None:
             self._fetch(opening.scene)
         self.assessor = assessor_of(opening)
+        self.floor = opening.floor
         self.world = opening.world
         self._leave_searches()
         return Snapshot(

@@ -129,6 +129,15 @@ class Opening:
     world: Callable[[], World] | None = None
 
 
+    @property
+    def floor(self) -> Callable[[], Surface] | None:
+        """Loads the floor of a recording, or gives that of the live episode."""
+        if self.surface is not None:
+            return self.surface
+        found: Surface | None = getattr(self.run, "surface", None)
+        return None if found is None else lambda: found
+
+
 @dataclass(frozen=True, slots=True)
 class ForkAt:
     """Another answer at a decision of a branch.

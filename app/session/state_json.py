@@ -107,6 +107,7 @@ def _branch(snapshot: Snapshot) -> Json:
         "label": branch_label(snapshot),
         "differs": branch.origin is Origin.FORK,
         "fork": branch.fork_decision,
+        "recipe": bool(branch.trace_sha256),
         "running": branch.running,
         "ended": ended_words(branch.footer) if branch.footer else "",
         "decisions": cost_of(snapshot.story.decisions).decisions,

@@ -23,6 +23,7 @@ from app.session.veil import answers_shown, veiled
 from c2nav_engine.contract.question import Picture
 from c2nav_engine.errors import C2NavError
 from c2nav_engine.world.scene import Scene
+from c2nav_engine.world.surface import Surface
 
 log = logging.getLogger(__name__)
 
@@ -58,6 +59,15 @@ class Session:
     def scene(self) -> Scene | None:
         """The scene of what is open, once it came; `snapshot.scene_serial` says when it changed."""
         return self._desk.scene
+
+    def floor(self) -> Surface | None:
+        """The floor of what is open, loaded where it was not yet; None where there is none.
+
+        Raises:
+            C2NavError: When it cannot be loaded.
+        """
+        load = self._desk.floor
+        return None if load is None else load()
 
     def thumbnail(self, index: int) -> Picture | None:
         """A small picture of an entry of what is open; fetched once."""

@@ -29,6 +29,12 @@ def _block(snapshot: Snapshot) -> str:
                 "Copy the address"
             )
         ),
+        m.heading("Figure for a paper"),
+        Markup('<div class="c2-buttons">{}</div>').format(
+            Markup('<button type="button" class="c2-link" data-open="figure">{}</button>').format(
+                "Figure…"
+            )
+        ),
         m.heading("This branch"),
         m.facts(
             [
