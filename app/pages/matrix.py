@@ -78,8 +78,9 @@ def matrix_of(library: Library, a: Arm, b: Arm) -> Matrix:
     cells: dict[str, list[Pair]] = {name: [] for name in CELLS}
     for task in tasks:
         pair = (first[task], second[task])
-        won = tuple(case.values["success"] == 1 for case in pair)
-        cells[CELLS[{(True, True): 0, (True, False): 1, (False, True): 2}.get(won, 3)]].append(pair)
+        won = [case.values["success"] == 1 for case in pair]
+        # CELLS in order: both bits set, the first alone, the second alone, none.
+        cells[CELLS[3 - 2 * won[0] - won[1]]].append(pair)
     if not tasks:
         return Matrix(dict.fromkeys(CELLS, ()), None, "they share no scored episode")
     flags = [[each[task].values["success"] == 1 for task in tasks] for each in (first, second)]

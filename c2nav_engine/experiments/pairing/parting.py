@@ -91,7 +91,7 @@ def _number(exchange: Exchange | None, before: int) -> int:
 
 def _difference(a: Exchange | None, b: Exchange | None) -> _Found | None:
     if a is None or b is None:
-        return Part.MOTION, ("", *(_act_words(each) for each in (a, b)))
+        return Part.MOTION, ("", _act_words(a), _act_words(b))
     if a.decision is not None or b.decision is not None:
         return _decided_differently(a, b)
     return _moved_differently(a, b)
@@ -104,7 +104,9 @@ def _decided_differently(a: Exchange, b: Exchange) -> _Found | None:
         return None if same else (Part.QUESTION, ("", _act_words(a), _act_words(b)))
     if one.question.slot is not other.question.slot:
         return Part.QUESTION, ("", _act_words(a), _act_words(b))
-    asked = difference(*(replace(ask.question, shuffle_seed=0) for ask in (one, other)))
+    asked = difference(
+        replace(one.question, shuffle_seed=0), replace(other.question, shuffle_seed=0)
+    )
     if asked is not None:
         return Part.QUESTION, asked
     said = [said_words(answer_of(exchange)) for exchange in (a, b)]
@@ -120,7 +122,7 @@ def _moved_differently(a: Exchange, b: Exchange) -> _Found | None:
     words = [_act_words(exchange) for exchange in (a, b)]
     if words[0] != words[1]:
         return Part.MOTION, ("actions", words[0], words[1])
-    walked = difference(*(exchange.response for exchange in (a, b)), "achieved")
+    walked = difference(a.response, b.response, "achieved")
     return None if walked is None else (Part.MOTION, walked)
 
 
