@@ -173,7 +173,13 @@ def _glance_choice(
     )
     answered = yield from ask(state, question, candidates)
     if isinstance(answered, Cardinal):
-        return math.radians(answered.value)
+        left_rad = math.radians(answered.value)
+        if turns(left_rad, state.task.profile.turn_rad):
+            return left_rad
+        # A heading excludes no sector from the next glance, so without a turn the same question
+        # could come for ever; as a fallback it is counted [C].
+        yield from fallback(state, "the named heading is the present one")
+        return None
     winner = seeing.winner_of(answered)
     if winner is None:
         yield from fallback(state, _why(answered))

@@ -209,6 +209,15 @@ def test_the_cardinal_glance_only_reorients():
     assert tale.moves("glance")[0].actions == (Action.RIGHT,) * 8
 
 
+def test_a_glance_that_names_the_present_heading_cannot_go_on_for_ever():
+    blocked = {"left": 0.1, "front": 0.1, "right": 0.1}
+    tale = drive(
+        task("spatial-cardinal"), prefer(glance=Cardinal(4.0)), Floor(free_m=blocked), asks=60
+    )
+    assert tale.ending is Ending.STALLED
+    assert len(tale.answers) == 12
+
+
 def test_an_ordering_over_unoffered_keys_is_a_broken_promise():
     import pytest
 
