@@ -13,9 +13,10 @@ from c2nav_engine.errors import UsageError
 
 
 def import_answers(study: Study, store: Store, events: Sequence[Event], *, where: str) -> int:
-    """Add a person's answers to the store; returns how many.
+    """Add a person's answers to the store; returns how many events were in the file.
 
-    Authors are expected under their pseudonyms, as exports write them.
+    Authors are expected under their pseudonyms, as exports write them. What was said outside any
+    study, in the inspector, comes along as it is; there authors may be strangers.
 
     Raises:
         UsageError: An event is of another study, trace or decision than its place says, comes from
@@ -26,6 +27,10 @@ def import_answers(study: Study, store: Store, events: Sequence[Event], *, where
         held = [event for _, event in writing.events() if event.extra.get("study") == study.name]
         answered = {place for event in standing(held) if (place := _place(event))}
         for event in events:
+            if "study" not in event.extra:
+                known = names.get(event.author)
+                writing.append(replace(event, author=known.name if known else event.author))
+                continue
             problem = _problem(study, event, names.get(event.author) is not None)
             person = names.get(event.author)
             if problem or person is None:
@@ -34,6 +39,8 @@ def import_answers(study: Study, store: Store, events: Sequence[Event], *, where
                 raise UsageError(f"{where}: event {event.id}: expected queue {person.queue}")
             writing.append(replace(event, author=person.name))
         for event in standing(events):
+            if "study" not in event.extra:
+                continue
             place = _place(event)
             if place in answered:
                 message = f"{where}: place {event.extra['place']} of {event.author} is answered"

@@ -248,6 +248,15 @@ def test_a_wrong_file_is_refused_whole(returned, run: Path, change: dict[str, st
         assert store.events() == []
 
 
+def test_what_was_said_in_the_inspector_comes_along(returned, run: Path):
+    study, events = returned
+    said = Event("x1", Kind.WRONG, "P9", study.items[0].trace_sha256, 2, blind=False)
+    undo = Event("x2", Kind.UNDO, "P9", said.trace_sha256, 2, target="x1")
+    with Store(run / "reviews.sqlite") as store:
+        assert import_answers(study, store, [*events, said, undo], where="f") == 6
+        assert store.events()[-2:] == [said, undo]
+
+
 def test_doubled_items_are_refused(returned, run: Path):
     study, events = returned
     double = replace(events[1], id="another")
