@@ -191,7 +191,7 @@ def test_what_the_next_leg_leads_to_draws_already():
 
 def test_a_view_of_many_things_is_preferred_to_a_wall():
     rgb = np.full((224, 224, 3), (215, 205, 180), np.uint8)
-    rgb[90:140] = np.arange(224, dtype=np.uint8)[None, :, None]
+    rgb[110:140] = np.arange(224, dtype=np.uint8)[None, :, None]
     far = encoded(rgb)
     assert Pixels(far).variety > Pixels(room()).variety
     shown = {"left": room(), "front": room(), "right": far}

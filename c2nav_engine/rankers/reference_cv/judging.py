@@ -30,11 +30,11 @@ NEAR_HANGING_SHARE = 0.015
 """[C] A thing on a wall or on furniture is near when it is at least so large."""
 ATTRACTION = 3.0
 """[C] Weight of a landmark in full view; it outweighs every other evidence for a direction."""
-VARIETY = 0.75
+VARIETY = 1.0
 """[C] Weight of the variety in the distance."""
-USUAL_VARIETY = 4.0
-"""[C] A view down a room has about so much; without other views it is what to compare with."""
-AHEAD = 0.4
+USUAL_VARIETY = 3.8
+"""[C] The mean over recorded views: what to compare with where there is one view only."""
+AHEAD = 0.3
 """[C] What speaks for going on ahead; as much speaks against turning back."""
 HANGING_REACH = 0.6
 """[C] Things on walls end above the camera or little below it."""

@@ -80,13 +80,14 @@ class Pixels:
 
     @functools.cached_property
     def variety(self) -> float:
-        """How much stands around the horizon: log of the number of coarse colours there.
+        """How much there is to see far off: log of the number of coarse colours under the horizon.
 
-        A wall or a cupboard close by fills that band with few colours, while a doorway, a hallway
-        or a far room brings in those of many things. Unitless, some 2 (a bare wall) to 5.
+        A wall or a cupboard close by fills that band with few colours, and so does the wall below
+        a window, while a doorway, a hallway or a far room brings in a floor and what stands on
+        it. Unitless, some 2 (a bare wall) to 5.
         """
         rows, columns = self._bgr.shape[:2]
-        band = self._bgr[rows * 42 // 100 : rows * 60 // 100, columns // 4 : -columns // 4]
+        band = self._bgr[rows * 50 // 100 : rows * 62 // 100, columns // 4 : -columns // 4]
         pixels = band.reshape(-1, 3)
         counts = [len(np.unique(pixels // step, axis=0)) for step in _COLOUR_STEPS]
         return float(np.log(counts).mean())
