@@ -1,0 +1,109 @@
+"""Failures are gathered in the browser, and two of them compared, by mouse and keyboard."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from collections.abc import Generator, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+import uvicorn
+from playwright.sync_api import Browser, Page
+
+from app.gateway.runs import RunPages, runs_application
+from app.pages.index import curation
+from app.pages.library import Library
+from tests.helpers.cases import fake_run
+
+pytestmark = pytest.mark.browser
+
+PATIENCE_MS = 180_000
+"""Figures are drawn by a library that takes seconds to load, more on a busy machine."""
+
+
+@contextmanager
+def served(library: Library) -> Generator[str]:
+    listener = socket.create_server(("127.0.0.1", 0))
+    config = uvicorn.Config(runs_application(RunPages(library)), ws="none", log_level="warning")
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
+    thread.start()
+    while not server.started:
+        time.sleep(0.02)
+    try:
+        yield f"http://127.0.0.1:{listener.getsockname()[1]}/"
+    finally:
+        server.should_exit = True
+        thread.join(timeout=30.0)
+
+
+@pytest.fixture
+def page(browser: Browser) -> Iterator[Page]:
+    page = browser.new_page(viewport={"width": 1280, "height": 720})
+    problems: list[str] = []
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    page.on("console", lambda m: problems.append(m.text) if m.type == "error" else None)
+    yield page
+    page.close()
+    assert problems == []
+
+
+def choose(page: Page, *places: int) -> None:
+    for place in places:
+        page.locator(".p-case input[type=checkbox]").nth(place).check()
+
+
+def answer(page: Page, button: str, name: str) -> None:
+    """Press a button of the bar and answer its dialog."""
+    page.get_by_role("button", name=button).click()
+    page.locator("#p-ask input").fill(name)
+    with page.expect_navigation():
+        page.keyboard.press("Enter")
+
+
+def test_a_set_is_gathered_captioned_and_compared(page: Page, tmp_path: Path):
+    fake_run(tmp_path / "one", episodes=3)
+    library = Library(tmp_path)
+    library.refresh()
+    with served(library) as url:
+        page.goto(f"{url}cases")
+        choose(page, 0, 2)
+        answer(page, "Tag…", "glass door")
+        answer(page, "Add to set…", "failures")
+        page.get_by_role("link", name="failures", exact=True).click()
+        assert page.locator(".p-case").count() == 2
+        page.locator("[data-caption]").first.fill("Walks into glass.")
+        with page.expect_response("**/cases/caption"):
+            page.keyboard.press("Tab")
+        with page.expect_response("**/cases/export", timeout=PATIENCE_MS) as exported:
+            page.get_by_role("button", name="Export…").click()
+        assert Path(exported.value.json()["folder"], "appendix.tex").is_file()
+        page.get_by_role("button", name="Compare the two").click()
+        page.wait_for_selector(".p-parted h1")
+        before = page.locator("output").inner_text()
+        page.keyboard.press("ArrowLeft")
+        assert page.locator("output").inner_text() != before
+        page.locator("[data-axis]").select_option("leg")
+        image = page.locator(".p-walk img").first
+        page.wait_for_function("() => document.querySelector('.p-walk img').naturalWidth > 0")
+        assert image.get_attribute("src")
+        members = curation.members(library.store, "failures")
+        assert [caption for _, _, caption in members] == ["Walks into glass.", ""]
+        assert all(case is not None and case.marks == ("glass door",) for case, _, _ in members)
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (1920, 1080)])
+def test_no_page_overflows_sideways(page: Page, tmp_path: Path, size: tuple[int, int]):
+    fake_run(tmp_path, episodes=2)
+    library = Library(tmp_path)
+    library.refresh()
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    digests = library.store.column("select trace_sha256 from episodes")
+    with served(library) as url:
+        for path in ("run", "cases", "compare", f"compare?a={digests[0]}&b={digests[1]}"):
+            page.goto(f"{url}{path}")
+            wide, room = page.evaluate("[document.body.scrollWidth, window.innerWidth]")
+            assert wide <= room, path
