@@ -10,12 +10,14 @@ import tyro
 
 from app.commands.options import JsonOpt
 from app.commands.output import print_json
-from c2nav_engine.contract.prompt import Prompt
-from c2nav_engine.contract.render import text_of
+from c2nav_engine.contract.outcome import Answered
+from c2nav_engine.contract.prompt import Prompt, Query
+from c2nav_engine.contract.render import render, text_of
 from c2nav_engine.errors import UsageError
 from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.runner.exchange import Exchange
 from c2nav_engine.runner.recorded import open_trace
+from c2nav_engine.traces.words import outcome_words
 
 
 def question(
@@ -32,36 +34,49 @@ def question(
     if not isinstance(decision.request, Ask):
         message = f"decision {at} of {trace.name} was settled without a question"
         raise UsageError(message)
-    prompts = _prompts(decision)
+    shown = _shown(decision.request, decision)
     if pictures is not None:
-        _write_pictures(prompts, pictures)
+        _write_pictures([prompt for prompt, _ in shown], pictures)
     if json:
-        print_json({"decision": at, "queries": _queries(decision)})
+        committed = _committed(decision)
+        print_json({"decision": at, "queries": [_facts(*each) for each in shown], **committed})
         return 0
-    for query in _queries(decision):
-        sys.stdout.write(f"--- order {query['order']}, attempt {query['attempt']}\n")
-        sys.stdout.write(f"{query['text']}\n--- answer\n{query['answer']}\n\n")
+    for prompt, query in shown:
+        sys.stdout.write(f"--- order {prompt.order}, attempt {prompt.repair}\n{text_of(prompt)}\n")
+        if query is not None:
+            said = f"{query.reply.text}\n" if query.reply.text else ""
+            sys.stdout.write(f"--- answer\n{said}read as: {outcome_words(query.outcome)}\n\n")
+    for name, words in _committed(decision).items():
+        sys.stdout.write(f"--- {name}: {words}\n")
     return 0
 
 
-def _prompts(decision: Exchange) -> list[Prompt]:
-    return [query.prompt for query in decision.ranked.queries] if decision.ranked else []
+def _shown(ask: Ask, decision: Exchange) -> list[tuple[Prompt, Query | None]]:
+    """Each prompt with its query; to a person alone the question was put in its first order."""
+    if decision.ranked is None:
+        return [(render(ask.question), None)]
+    return [(query.prompt, query) for query in decision.ranked.queries]
 
 
-def _queries(decision: Exchange) -> list[dict[str, object]]:
-    queries = decision.ranked.queries if decision.ranked else ()
-    return [
-        {
-            "order": query.prompt.order,
-            "attempt": query.prompt.repair,
-            "template": query.prompt.question.template,
-            "request_sha256": query.prompt.request_sha256,
-            "labels": dict(query.prompt.labels),
-            "text": text_of(query.prompt),
-            "answer": query.reply.text,
-        }
-        for query in queries
-    ]
+def _committed(decision: Exchange) -> dict[str, str]:
+    """What the loop was sent, and who said so."""
+    outcome = decision.response
+    words = outcome_words(outcome) if isinstance(outcome, Answered) else ""
+    who = decision.ranked.ranker if decision.ranked is not None else ""
+    return {"committed": words, "by": decision.override.who if decision.override else who}
+
+
+def _facts(prompt: Prompt, query: Query | None) -> dict[str, object]:
+    return {
+        "order": prompt.order,
+        "attempt": prompt.repair,
+        "template": prompt.question.template,
+        "request_sha256": prompt.request_sha256,
+        "labels": dict(prompt.labels),
+        "text": text_of(prompt),
+        "answer": query.reply.text if query is not None else None,
+        "outcome": outcome_words(query.outcome) if query is not None else None,
+    }
 
 
 def _write_pictures(prompts: list[Prompt], folder: Path) -> None:
