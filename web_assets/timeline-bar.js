@@ -126,11 +126,12 @@ class TimelineBar extends HTMLElement {
     }
     const crowd = new Map();
     for (const event of timeline.events) {
-      // Several events of one step stand side by side.
+      // Several events of one step stand side by side; at the right edge they grow to the left.
       const place = crowd.get(event.step) ?? 0;
+      const fits = this.x(event.step) + 12 * place < this.clientWidth - 8;
       crowd.set(event.step, place + 1);
       const kind = `${event.fault ? "bad" : ""} ${event.step > here.step ? "far" : ""}`;
-      parts.push(this.mark(event, EVENTS, event.sign, kind, { step: event.step }, 12 * place));
+      parts.push(this.mark(event, EVENTS, event.sign, kind, { step: event.step }, fits ? 12 * place : -12 * place));
     }
     parts.push(...(timeline.place ? this.place(timeline.place) : this.regrets(timeline.regret)));
     return parts;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from app.session.decisions import Decision
@@ -13,7 +14,7 @@ from app.session.turning_state import flip_words
 from app.session.wording import is_fault, outcome_words, slot_words
 from c2nav_engine.contract.outcome import Ordering
 from c2nav_engine.episodes.episode import Episode
-from c2nav_engine.experiments.turning.flips import TURNING, UNSTABLE
+from c2nav_engine.experiments.turning.flips import TURNING, UNSTABLE, Flip
 
 Json = dict[str, Any]
 
@@ -137,13 +138,27 @@ def _turning(snapshot: Snapshot) -> list[Json]:
         number = state.recoverable.decision
         words = f"decision {number} · last recoverable, for a noiseless observer · privileged"
         found.append({"sign": "⇥", "step": steps[number], "fault": False, "words": words})
-    for flip in state.flips:
-        sign = {TURNING: "★", UNSTABLE: "☆"}.get(flip.verdict)
-        if sign is not None:
-            opens = {"decision": flip.decision, "answer": flip.answer}
-            event = {"sign": sign, "step": steps[flip.decision], "fault": False, "opens": opens}
-            found.append({**event, "words": flip_words(flip)})
+    for flip in _marked(state.flips):
+        found.append(
+            {
+                "sign": "★" if flip.verdict == TURNING else "☆",
+                "step": steps[flip.decision],
+                "fault": False,
+                "words": flip_words(flip),
+                "opens": {"decision": flip.decision, "answer": flip.answer},
+            }
+        )
     return found
+
+
+def _marked(flips: Sequence[Flip]) -> Iterable[Flip]:
+    """One a decision: its first turning point, else the first answer that was unstable."""
+    by_decision: dict[int, Flip] = {}
+    for verdict in (TURNING, UNSTABLE):
+        for flip in flips:
+            if flip.verdict == verdict:
+                by_decision.setdefault(flip.decision, flip)
+    return by_decision.values()
 
 
 def _leg_ends(judgements: dict[int, Judgement]) -> list[Json]:

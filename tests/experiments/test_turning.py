@@ -21,7 +21,7 @@ from c2nav_engine.experiments.turning.flips import (
 )
 from c2nav_engine.experiments.turning.moments import Recording, going_on
 from c2nav_engine.experiments.turning.recoverable import last_recoverable
-from c2nav_engine.experiments.turning.regrets import regrets_of
+from c2nav_engine.experiments.turning.regrets import WRONG, Regret, regrets_of
 from c2nav_engine.experiments.turning.same_ranker import Continuing, continuing
 from c2nav_engine.experiments.turning.summary import (
     BY_CONTROLLER,
@@ -126,6 +126,15 @@ def test_going_on_without_a_change_reproduces_the_record(spoilt, whole):
     assert footer.outcome is recording.footer.outcome
     assert footer.metrics["ne_m"] == recording.footer.metrics["ne_m"]
     assert [e.response for e in again.exchanges] == [e.response for e in recording.exchanges]
+
+
+def test_a_wrong_answer_is_weighed_by_its_metres_and_by_one_where_it_has_none():
+    near = Regret(1, Slot.SEEING, "front", "left", 0.001, WRONG)
+    far = Regret(2, Slot.SEEING, "front", "left", 1.2, WRONG)
+    early, late = (Regret(n, Slot.GROUND, "here", "ahead", None, WRONG) for n in (3, 4))
+    right = Regret(5, Slot.GROUND, "here", "here", None, "")
+    ordered = sorted((near, far, early, late, right), key=lambda regret: regret.weight)
+    assert [regret.decision for regret in ordered] == [2, 4, 3, 1, 5]
 
 
 # ---------------------------------------------------------------- (c)

@@ -13,7 +13,7 @@ from app.session.snapshot import Snapshot
 from app.session.turning_state import Turning
 from app.session.wording import SIGNS, key_words, plural, seconds, slot_words
 from c2nav_engine.experiments.turning.flips import NO_SUCCESS, TURNING, UNSTABLE, Flip
-from c2nav_engine.experiments.turning.regrets import Regret
+from c2nav_engine.experiments.turning.regrets import WRONG, Regret
 
 LISTED = 10
 """Decisions of (a) that are listed."""
@@ -22,7 +22,12 @@ LISTED = 10
 def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:  # noqa: ARG001 # buttons carry commands
     """Build the panel."""
     block = Html(gui)
-    return lambda snapshot: block.show(m.padded(*_block(snapshot)))
+    return lambda snapshot: block.show(content(snapshot))
+
+
+def content(snapshot: Snapshot) -> str:
+    """Everything that the panel shows."""
+    return m.padded(*_block(snapshot))
 
 
 def _block(snapshot: Snapshot) -> list[Markup]:
@@ -38,12 +43,21 @@ def _before(snapshot: Snapshot) -> list[Markup]:
     if snapshot.view.blind:
         return [m.note("Hidden while answers are covered")]
     if succeeded(snapshot.branch) is not False:
-        return [m.note("Turning points are of a finished branch that failed")]
+        return [m.note("Turning points are of a finished branch that failed"), *_back(snapshot)]
     words = (
         "This branch failed. Which single answer would have led to success? First, without a "
         "query: what each answer cost, and the last decision from which the truth still succeeds"
     )
     return [m.note(words), _buttons(m.action("Measure", c.MeasureTurning(), primary=True))]
+
+
+def _back(snapshot: Snapshot) -> list[Markup]:
+    """From the branch of a changed answer to the failure that it left."""
+    branch = snapshot.branch
+    if branch.parent not in snapshot.turning:
+        return []
+    back = c.Go(branch=branch.parent, decision=branch.fork_decision)
+    return [_buttons(m.action(f"Back to the failure, decision {branch.fork_decision}", back))]
 
 
 def _buttons(*actions: Markup) -> Markup:
@@ -63,7 +77,7 @@ def _recoverable(state: Turning) -> list[Markup]:
         return [m.heading("Last recoverable decision · privileged"), m.note(words)]
     return [
         m.heading("Last recoverable decision · privileged"),
-        Markup("<p>{} {}</p>").format(
+        Markup("<div>{} {}</div>").format(
             m.action(f"decision {found.decision}", c.Go(decision=found.decision)),
             "the latest from which a noiseless observer still succeeds",
         ),
@@ -98,9 +112,7 @@ def _verdict(state: Turning) -> Markup:
     }
     if not state.flips or (state.left and state.verdict != TURNING):
         return m.NOTHING
-    return Markup('<p class="{}"><b>{}</b></p>').format(
-        "c2-good" if state.verdict == TURNING else "", words[state.verdict]
-    )
+    return Markup("<b>{}</b>").format(words[state.verdict])
 
 
 def _cost(state: Turning) -> Markup:
@@ -114,7 +126,7 @@ def _cost(state: Turning) -> Markup:
     return m.note(
         f"{plural(len(state.left), 'answer')} left to try at {plural(decisions, 'decision')}, "
         f"{plural(state.repeats, 'run')} each and as many unchanged: {', '.join(spent)} of the "
-        "ranker, and the robot's own way"
+        "ranker, and driving the robot again"
     )
 
 
@@ -159,13 +171,15 @@ def _regrets(snapshot: Snapshot, state: Turning) -> list[Markup]:
 
 
 def _regret(snapshot: Snapshot, regret: Regret) -> list[str | Markup]:
+    # Metres say that an answer was wrong; what the controller did is said beside them.
+    words = "" if regret.regret_m is not None and regret.words == WRONG else regret.words
     metres = "" if regret.regret_m is None else f"+{regret.regret_m:.2f} m"
     return [
         _decision(snapshot, regret.decision),
         slot_words(regret.slot),
         key_words(regret.committed) or "none",
         key_words(regret.target) if regret.target != regret.committed else "",
-        Markup("{}<small>{}</small>").format(metres, regret.words),
+        Markup("{}<small>{}</small>").format(metres, words),
     ]
 
 

@@ -16,6 +16,8 @@ from c2nav_engine.runner.opening import task_of
 
 WRONG = "wrong"
 """What is said of an answer that differs from the right one."""
+WRONG_M = 1.0
+"""Weight of a wrong answer without metres: more than most bundles can lose [C]."""
 SPATIAL = frozenset({Slot.SEEING, Slot.DIRECT})
 """Slots whose alternatives end at different places, so that regret is metres."""
 
@@ -43,10 +45,10 @@ class Regret:
 
     @property
     def weight(self) -> tuple[float, int]:
-        """Sorting key, worst first: metres, then wrong answers that do not move, latest first."""
-        metres = self.regret_m if self.regret_m is not None else 0.0
-        wrong = 1.0 if self.words == WRONG else 0.0
-        return (-max(metres, wrong), -self.decision)
+        """Sorting key, worst first, then latest; a wrong answer that moves nothing counts 1 m."""
+        if self.regret_m is not None:
+            return (-self.regret_m, -self.decision)
+        return (-WRONG_M if self.words == WRONG else 0.0, -self.decision)
 
 
 def regrets_of(recording: Recording) -> list[Regret]:
