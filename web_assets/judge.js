@@ -27,13 +27,39 @@ async function call(name, body = {}) {
   return said;
 }
 
-function part(piece) {
-  if (piece.text !== undefined) {
-    const words = document.createElement("div");
-    words.className = "words";
-    words.textContent = piece.text;
-    return words;
+function wordsOf(text) {
+  const words = document.createElement("div");
+  words.className = "words";
+  words.textContent = text;
+  return words;
+}
+
+/** The parts in their order; pictures that follow each other stand side by side to be compared. */
+function laidOut(parts) {
+  const nodes = [];
+  let text = "";
+  let row = null;
+  for (const part of parts) {
+    if (part.text !== undefined) {
+      text += part.text;
+      continue;
+    }
+    // The last line before a picture names it and goes with it.
+    const name = text.trimEnd().lastIndexOf("\n") + 1;
+    if (text.slice(0, name).trim() || !row) {
+      row = document.createElement("div");
+      row.className = "views";
+      nodes.push(wordsOf(text.slice(0, name)), row);
+    }
+    const view = document.createElement("figure");
+    view.append(wordsOf(text.slice(name)), imageOf(part));
+    row.append(view);
+    text = "";
   }
+  return text ? [...nodes, wordsOf(text)] : nodes;
+}
+
+function imageOf(piece) {
   const image = new Image(piece.width, piece.height);
   image.alt = "";
   image.src = `data:image/jpeg;base64,${piece.jpeg}`;
@@ -48,6 +74,7 @@ function enlarge() {
     const width = Number(image.getAttribute("width"));
     const times = Math.max(1, Math.floor((large ? room : Math.min(room, 560)) / width));
     image.style.width = `${width * times}px`;
+    image.parentElement.style.width = `${width * times}px`;
   }
 }
 
@@ -58,7 +85,7 @@ async function show(said) {
   at("bar").value = said.done;
   at("bar").max = Math.max(1, said.total);
   at("progress").textContent = `${said.done} of ${said.total}`;
-  const parts = item ? item.question.parts.map(part) : [part({ text: farewell })];
+  const parts = item ? laidOut(item.question.parts) : [wordsOf(farewell)];
   at("question").replaceChildren(...parts);
   at("choices").replaceChildren(...(item ? item.question.labels.map(choice) : []));
   enlarge();

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import socket
 import threading
@@ -20,10 +21,12 @@ from statsmodels.stats.inter_rater import aggregate_raters, fleiss_kappa
 
 from app.gateway.judging import desks_of, judging_application
 from app.reviews.agreement import agreements
+from app.reviews.questions import prompt_at
 from app.reviews.reading import read_answers
 from app.reviews.state import standing
 from app.reviews.store import export_lines, store_of
 from app.reviews.study import Person, Study
+from c2nav_engine.contract.prompt import Prompt
 from tests.helpers.judged import judged_run, study_with
 
 pytestmark = pytest.mark.browser
@@ -141,11 +144,12 @@ def _figures_equal_those_by_hand(run: Path, lines: list[dict[str, Any]]) -> None
 def test_ties_none_and_undo_by_keyboard(
     browser: Browser, study: tuple[Study, list[tuple[Person, str]]]
 ):
-    frozen, ((_, token), _) = study
+    frozen, ((ann, token), _) = study
     with served(frozen.run) as url:
         page = browser.new_context().new_page()
         page.goto(url + token)
         page.wait_for_function(SHOWN, arg=0)
+        _shows(page, prompt_at(frozen, frozen.queue(ann.queue)[0]))
         for key in ("b", "=", "a"):
             page.keyboard.press(key)
         assert page.inner_text("#ranking") == "B = A"
@@ -169,3 +173,14 @@ def test_ties_none_and_undo_by_keyboard(
     assert type(first.said).__name__ == "Tie"
     assert type(none.said).__name__ == "Abstention"
     assert undo.target == none.id
+
+
+def _shows(page: Page, prompt: Prompt) -> None:
+    """Every word and every picture of a prompt, in their order, and nothing else."""
+    words = page.evaluate(
+        "[...document.querySelectorAll('main .words')].map(n => n.textContent).join('')"
+    )
+    sources = page.evaluate("[...document.querySelectorAll('main img')].map(n => n.src)")
+    assert words.split() == "".join(p for p in prompt.parts if isinstance(p, str)).split()
+    pictures = [part.jpeg for part in prompt.parts if not isinstance(part, str)]
+    assert [base64.b64decode(each.split(",")[1]) for each in sources] == pictures
