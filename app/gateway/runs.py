@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import APIRouter, FastAPI, HTTPException, Path, Query
-from fastapi.responses import HTMLResponse, Response
+from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.exports.case_sets.packing import pack_set
@@ -231,6 +231,11 @@ def runs_application(pages: RunPages, *, names: Iterable[str] = ()) -> FastAPI:
 
     app = FastAPI(lifespan=lifespan, openapi_url=None, docs_url=None, redoc_url=None)
     mount_runs(app, pages)
+
+    @app.get("/")
+    def first() -> Response:
+        return RedirectResponse("run")
+
     serve_assets(app, assets())
     app.add_middleware(Doors, names=names)
     return app

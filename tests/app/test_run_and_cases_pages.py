@@ -104,7 +104,7 @@ def test_a_run_in_progress_says_how_far_it_is(tmp_path: Path):
     make_run(run, ["full"], by_chance({"full": 0.3}), episodes=3)
     library = Library(run)
     client = TestClient(runs_application(RunPages(library)), base_url="http://127.0.0.1")
-    assert "No episode has ended yet" in words(client.get("/run").text)
+    assert "No episode has ended yet" in words(client.get("/").text)
     first = client.get("/run/stamp", params={"run": "."}).json()
     with sqlite3.connect(run / "ledger.sqlite") as db:
         db.execute("create table tasks (key text, name text, state text, row text, error text)")

@@ -137,10 +137,9 @@ def _caption(case: Case, said: str) -> str:
         if isinstance(error, float)
         else "",
         ", ".join(tags),
-        f"“{case.instruction}”",
     ]
-    words = "; ".join(fact for fact in facts if fact) + "."
-    return f"{said.strip()} {words}".strip()
+    words = "; ".join(fact for fact in facts if fact)
+    return f"{said.strip()} {words}. Instruction: “{case.instruction}”".strip()
 
 
 def _write_words(library: Library, name: str, entries: Sequence[Entry], folder: Path) -> None:
