@@ -52,7 +52,7 @@ class TimelineBar extends HTMLElement {
     this.tip = h("div", { class: "tip", hidden: true });
     this.stop = subscribe((state, changed) => {
       if (changed.has("timeline") || changed.has("place"))
-        this.draw({ ...state.timeline, here: state.place });
+        this.soon({ ...state.timeline, here: state.place });
     });
     this.sizes = new ResizeObserver(() => this.timeline && this.draw(this.timeline));
     this.sizes.observe(this);
@@ -61,6 +61,15 @@ class TimelineBar extends HTMLElement {
   disconnectedCallback() {
     this.stop?.();
     this.sizes?.disconnect();
+  }
+
+  /** Draw with the next frame: while a person scrubs, several states arrive between two. */
+  soon(timeline) {
+    this.timeline = timeline;
+    this.frame ??= requestAnimationFrame(() => {
+      this.frame = null;
+      this.draw(this.timeline);
+    });
   }
 
   draw(timeline) {

@@ -7,6 +7,7 @@ const styles = styled(`
   .card { pointer-events: auto; display: inline-flex; align-items: center; gap: 10px; flex-wrap: wrap;
     background: var(--c2-card); border-radius: 8px; box-shadow: var(--c2-shadow); padding: 6px 12px;
     margin-top: 8px; border-left: 4px solid var(--c2-blue); }
+  .card span { min-width: 0; overflow-wrap: anywhere; }
   button { border: 1px solid var(--c2-line); background: var(--c2-card); border-radius: 6px; padding: 3px 10px;
     min-height: 28px; cursor: pointer; }
   button.go { background: var(--c2-blue); border-color: var(--c2-blue); color: #fff; font-weight: 600; }

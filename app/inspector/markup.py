@@ -64,7 +64,7 @@ def note(text: str) -> Markup:
 
 def fault(text: str) -> Markup:
     """Something that went wrong, with its sign."""
-    return Markup('<span class="c2-fault">✕ {}</span>').format(text)
+    return Markup('<span class="c2-fault">✕</span> {}').format(text)
 
 
 def picture(sha256: str, *, alt: str, size_px: int = 0) -> Markup:

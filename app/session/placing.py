@@ -125,7 +125,10 @@ class DepthSight:
         pinhole = self.profile.depth
         if ahead_m <= 0 or not (0 <= column < pinhole.width_px and 0 <= row < pinhole.height_px):
             return None
-        seen_m = float(depth_m[int(row), int(column)])
+        # What was kept may be coarser than what the camera gave.
+        rows, columns = depth_m.shape
+        kept = int(row / pinhole.height_px * rows), int(column / pinhole.width_px * columns)
+        seen_m = float(depth_m[kept])
         return None if seen_m == 0.0 else seen_m >= ahead_m - 2.0 * MARGIN_M
 
     def first_hit(self, origin_m: Point, direction: Point) -> Point | None:  # noqa: ARG002

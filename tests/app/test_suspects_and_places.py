@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.contract.question import Question, Slot
 from c2nav_engine.geometry import Point, Pose, world_from_camera, wrap_rad
 from c2nav_engine.metrics.off_path import off_path_m
+from c2nav_engine.sensing.encode import depth_png
 from c2nav_engine.world.scene import Material, Piece, Scene, scene_of
 from tests.helpers import stage
 from tests.helpers.meshes import slab, surface_of
@@ -157,6 +159,20 @@ def test_without_the_scene_recorded_depth_serves_and_says_so(story: Story):
     answer = place_of(story, DepthSight(story.header.profile), LANDMARKS[0])
     assert "depth" in answer.basis
     assert {s.status for s in answer.sightings} <= {"away", "unsure"}  # the play keeps no depth
+
+
+@pytest.mark.parametrize("shape", [(16, 16), (16, 24), (256, 256)])
+def test_depth_that_was_kept_coarser_is_read_where_the_point_lies(story: Story, shape):
+    profile, look = story.header.profile, looks_of(story)[0]
+    depth_m = np.full(shape, 9.0, np.float32)
+    depth_m[:, : shape[1] // 2] = 2.0  # a wall stands on the left
+    kept = replace(look, glimpse=replace(look.glimpse, depth_png=depth_png(depth_m)))
+    pose = look.glimpse.pose
+    ahead = Pose(pose.ahead(4.0), pose.yaw_rad)
+    for turn_rad, clear in ((math.pi / 2.0, False), (-math.pi / 2.0, True)):
+        x, y, z = ahead.turned(turn_rad).ahead(1.0)
+        point = (x, y + profile.camera_height_m, z)
+        assert DepthSight(profile).clear([kept], point) == [clear]
 
 
 def test_marks_lie_where_the_camera_sees_the_point(story: Story, scene: Scene):
