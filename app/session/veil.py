@@ -72,6 +72,7 @@ def veiled(snapshot: Snapshot) -> Snapshot:
         assessed={},
         view=replace(snapshot.view, layers=snapshot.view.layers - _TRUTH),
         reasked=NOTHING,
+        turning={},
         reviews={branch.branch_id: reviews},
         covered=hides,
     )

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from app.reviews.audit import AuditBook, store_beside
 from app.reviews.events import Event, Kind
 from app.reviews.store import Store
 from app.session import commands as c
+from app.session import veil
 from app.session.snapshot import WHOLE, Snapshot
 from app.session.state_json import state_json
 from app.session.story import story_of
@@ -198,6 +200,50 @@ def test_a_covered_answer_is_in_nothing_that_is_drawn(tmp_path: Path):
         assert (shown["timeline"]["last"], shown["timeline"]["curve"]) == (exchange.step, [])
         assert max(mark["decision"] for mark in shown["timeline"]["marks"]) == number
         assert shown["branch"]["label"] == "blind · the answer is covered"
+
+
+HARMLESS = {
+    "version",
+    "stop",
+    "asking",
+    "draft",
+    "offer",
+    "playing",
+    "tags",
+    "revealed",
+    "notice",
+    "driver",
+    "who",
+    "working",
+    "consent_to",
+    "no_scene",
+    "scene_serial",
+}
+"""Parts of a snapshot that know nothing of what was answered, or only what the person did."""
+
+CUT = {
+    "chooser",
+    "branches",
+    "branch",
+    "story",
+    "proposals",
+    "view",
+    "reviews",
+    "covered",
+    "parent",
+    "place",
+    "assessed",
+    "reasked",
+    "turning",
+}
+"""Parts that covering cuts or empties."""
+
+
+def test_whoever_adds_to_a_snapshot_decides_what_covering_does_to_it():
+    names = {field.name for field in fields(Snapshot)}
+    assert names == HARMLESS | CUT
+    source = inspect.getsource(veil.veiled)
+    assert all(f"{name}=" in source for name in CUT)
 
 
 def test_an_answer_before_revealing_is_blind_and_what_follows_is_seen(tmp_path: Path):
