@@ -183,9 +183,10 @@ def test_a_later_turn_gives_way_to_a_landmark_and_the_first_one_does_not_wait():
     assert winner(question(legs=legs, pictures=shown, sketch=later)) == "front"
 
 
-def test_what_the_next_leg_leads_to_draws_already():
-    shown = {"left": room(), "front": room(), "right": room(RED)}
-    legs = ("Leave the room", "go to the red bench", "stop")
+@pytest.mark.parametrize("way", ["go to", "go past"])
+def test_the_landmark_of_the_next_leg_draws_already(way: str):
+    shown = {"left": room(), "front": room(), "right": room(RED, size=14)}
+    legs = ("Leave the room", f"{way} the red bench", "stop")
     assert winner(question(legs=legs, pictures=shown, sketch="")) == "right"
 
 

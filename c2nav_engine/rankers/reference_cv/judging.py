@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from c2nav_engine.rankers.reference_cv.pixels import Pixels, Spot, likeness
 from c2nav_engine.rankers.reference_cv.words import (
@@ -75,8 +76,8 @@ def direction_scores(
 ) -> list[float]:
     """How well each view continues the leg.
 
-    What the next leg leads to counts as well: the leg in hand ends where that one begins, so that
-    its landmark often comes into view first.
+    The next leg's landmark counts in full, also where that leg only goes past it: the leg in hand
+    ends where the next one begins, and its landmark shows where that is.
 
     Args:
         views: What each shows.
@@ -87,7 +88,7 @@ def direction_scores(
     leg, following = legs
     landmarks = list(leg.landmarks)
     if following is not None and following.target is not None:
-        landmarks.append(following.target)
+        landmarks.append(replace(following.target, weight=1.0))
     return [
         ATTRACTION * sum(_attraction(view, landmark) for landmark in landmarks)
         + VARIETY * view.variety
