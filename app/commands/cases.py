@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -14,7 +15,7 @@ from app.commands.output import print_json
 from app.commands.surroundings import surroundings_of
 from app.exports.case_sets.packing import pack_set
 from app.exports.case_sets.unpacking import unpack_set
-from app.pages.index.finding import everything
+from app.pages.index.finding import Case, everything
 from app.pages.index.query import Query
 from app.pages.library import Library
 
@@ -38,8 +39,7 @@ def find(
     finally:
         library.close()
     if json:
-        rows = [{"path": c.path, **c.values, "tags": c.tags, "marks": c.marks} for c in found]
-        print_json({"cases": rows})
+        print_json({"cases": [_plain(case) for case in found]})
         return 0
     console = Console(highlight=False)
     for case in found:
@@ -81,6 +81,12 @@ def import_set(
     words = f"{taken.folder}: {taken.cases} cases; open them with `c2nav inspect {into}`"
     _say(words, {"folder": str(taken.folder), "cases": taken.cases}, json=json)
     return 0
+
+
+def _plain(case: Case) -> dict[str, object]:
+    """A case as JSON, which knows no infinity: a goal out of reach has no distance."""
+    values = {name: None if value == math.inf else value for name, value in case.values.items()}
+    return {"path": case.path, **values, "tags": case.tags, "marks": case.marks}
 
 
 def _tell_unreadable(library: Library) -> None:

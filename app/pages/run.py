@@ -97,9 +97,11 @@ def run_page(library: Library, run: str, *, against: str = "") -> str:
         run: Which of them.
         against: Another run to hold its manifest against; "" for the presets.
     """
-    if run not in library.runs():
-        message = f"expected a run of {library.root} ({', '.join(library.runs())}), came {run!r}"
-        raise InputError(message)
+    for each in (run, *([against] if against else [])):
+        if each not in library.runs():
+            known = ", ".join(library.runs())
+            message = f"expected a run of {library.root} ({known}), came {each!r}"
+            raise InputError(message)
     manifest = library.manifest(run)
     found = rows(library.store, run)
     counted = health(library.store, run)
@@ -110,6 +112,7 @@ def run_page(library: Library, run: str, *, against: str = "") -> str:
         name=run if run != "." else library.root.resolve().name,
         runs=library.runs(),
         against=against,
+        recorded=bool(manifest),
         tasks=library.tasks(run),
         unread=library.progress,
         facts=_facts(manifest),

@@ -145,9 +145,10 @@ def test_what_differs_between_two_manifests_is_named_where_it_lies():
 
 def test_a_run_that_is_not_there_is_named(visit: Visit):
     client, _ = visit
-    answer = client.get("/run", params={"run": "../elsewhere"})
-    assert answer.status_code == 404
-    assert "walked" in answer.json()["detail"]
+    for params in ({"run": "../elsewhere"}, {"run": "walked", "against": "../elsewhere"}):
+        answer = client.get("/run", params=params)
+        assert answer.status_code == 404
+        assert "walked" in answer.json()["detail"]
 
 
 # ---------------------------------------------------------------- the cases page
@@ -237,6 +238,10 @@ def test_a_set_is_gathered_exported_and_opens_elsewhere(visit: Visit, tmp_path: 
     with pytest.raises(InputError, match=trace.name):
         unpack_set(folder, tmp_path / "other")
     assert not (tmp_path / "other").exists()
+    facts = json.loads((folder / "manifest.json").read_text("utf-8"))
+    (folder / "manifest.json").write_text(json.dumps(facts | {"name": "../up"}), "utf-8")
+    with pytest.raises(InputError, match="a name for a set"):
+        unpack_set(folder, tmp_path / "other")
     strange = json.loads((folder / "manifest.json").read_text("utf-8")) | {"more": 1}
     (folder / "manifest.json").write_text(json.dumps(strange), "utf-8")
     with pytest.raises(InputError, match="more"):

@@ -38,8 +38,9 @@ def pages(library: Library) -> Iterator[tuple[str, str]]:
 
 def shoot(browser: Browser, url: str, path: Path, *, dark: bool) -> None:
     """One picture of the visible page."""
-    size = {"width": SIZE[0], "height": SIZE[1]}
-    page = browser.new_page(viewport=size, color_scheme="dark" if dark else "light")
+    page = browser.new_page(
+        viewport={"width": SIZE[0], "height": SIZE[1]}, color_scheme="dark" if dark else "light"
+    )
     page.goto(url)
     page.wait_for_load_state("networkidle")
     page.screenshot(path=path, type="jpeg", quality=80)

@@ -96,6 +96,9 @@ def check_files(folder: Path, manifest: Manifest) -> None:
     if strange:
         message = f"expected only what {FILE} names in {folder}, came {', '.join(strange[:5])}"
         raise InputError(message)
+    if len({Path(case.file).name for case in manifest.cases}) < len(manifest.cases):
+        message = f"expected every case of {folder} to have a file name of its own"
+        raise InputError(message)
     for case in manifest.cases:
         if manifest.files.get(case.file) != case.trace_sha256:
             message = f"expected {case.file} to be trace {case.trace_sha256[:12]}…; it is another"

@@ -40,6 +40,7 @@ def unpack_set(packed: Path, into: Path, *, scenes: Path | None = None) -> Unpac
         UsageError: The folder holds a run of that name already.
     """
     manifest = read_manifest(packed)
+    curation.check_name(manifest.name, "a set")
     check_files(packed, manifest)
     target = into / manifest.name
     if target.exists():

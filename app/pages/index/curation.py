@@ -42,7 +42,7 @@ def mark(store: Store, sha256: str, tag: str, *, on: bool) -> None:
     if tag in TAGS:
         message = f"{tag} is an automatic tag: its rule sets it; choose another name"
         raise InputError(message)
-    _check(tag, "a tag")
+    check_name(tag, "a tag")
     if on and case_of(store, sha256) is None:
         message = f"expected the digest of an indexed trace, came {sha256[:12]!r}"
         raise InputError(message)
@@ -61,7 +61,7 @@ def marks(store: Store) -> list[tuple[str, int]]:
 
 def save_view(store: Store, name: str, query: Query) -> None:
     """Keep a query under a name, replacing an earlier one; raises `InputError` for a bad one."""
-    _check(name, "a view")
+    check_name(name, "a view")
     query.where()
     query.order()
     with store.writing() as db:
@@ -89,7 +89,7 @@ def put_in_set(store: Store, name: str, sha256: str, *, caption: str | None = No
         sha256: Digest of the episode's trace.
         caption: What the set says of it; None keeps what it says.
     """
-    _check(name, "a set")
+    check_name(name, "a set")
     if case_of(store, sha256) is None:
         message = f"expected the digest of an indexed trace, came {sha256[:12]!r}"
         raise InputError(message)
@@ -148,7 +148,8 @@ def members(store: Store, name: str) -> list[tuple[Case | None, str, str]]:
     return [(case_of(store, sha256), sha256, caption) for sha256, caption in found]
 
 
-def _check(name: str, what: str) -> None:
+def check_name(name: str, what: str) -> None:
+    """Raise `InputError` unless a name can be kept, and be the name of a folder."""
     if not _NAME.fullmatch(name):
         message = (
             f"expected a name for {what} of letters, digits, spaces and . + - _, at most 60 long, "
