@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from app.reviews.audit import store_beside
 from app.reviews.events import Event
 from app.reviews.store import FILE, Store, read_lines, shared_events
 from c2nav_engine.errors import UsageError
@@ -17,12 +18,12 @@ def reviews_for(trace: TraceFile, source: Path | None) -> list[Review]:
     Args:
         trace: Which trace; events of others are passed over.
         source: A run folder, its store, an export of reviews, or a merged trace; by default the
-            run that the trace lies in.
+            run or folder that the trace lies in.
 
     Raises:
         UsageError: There is no such source.
     """
-    found = source if source is not None else trace.path.resolve().parent.parent
+    found = source if source is not None else store_beside(trace.path).parent
     if found.suffix == ".mcap":
         with TraceFile(found) as other:
             return [review for review in reviews_of(other) if review.trace_sha256 == trace.sha256]

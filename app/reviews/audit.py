@@ -19,6 +19,10 @@ from app.reviews.tags import read_tags, write_tags
 
 _NOTHING: Mapping[str, str] = {}
 
+WHOLE = -1
+"""Stands for the episode as a whole: leg ends belong to no decision. They are stored at decision 0,
+because an event always names one."""
+
 
 class AuditBook:
     """The reviews of one trace; answers of studies in the same store are left alone.
@@ -41,8 +45,13 @@ class AuditBook:
             self._add()
 
     def opinions(self) -> dict[tuple[str, int], Opinion]:
-        """(Author, decision) → what they now say about it."""
-        return {(who, number): held for (who, _, number), held in opinions(self._events).items()}
+        """(Author, decision) → what they now say about it; leg ends stand under `WHOLE`."""
+        found: dict[tuple[str, int], Opinion] = {}
+        for (who, _, number), held in opinions(self._events).items():
+            found[who, number] = replace(held, leg_ends_m={})
+            if held.leg_ends_m:
+                found[who, WHOLE] = Opinion(leg_ends_m=held.leg_ends_m, blind=held.blind)
+        return found
 
     def seen_before(self, who: str) -> int:
         """Decisions, from 0, whose answers this person is known to have seen."""
@@ -64,7 +73,7 @@ class AuditBook:
 
         Args:
             kind: A `Kind`.
-            decision: Decision of the trace, from 0.
+            decision: Decision of the trace, from 0; or `WHOLE`.
             who: Who says it.
             seen: Whether they had seen the model's answer.
             said: The answer of a ranking, or of what would have been better.
@@ -80,7 +89,7 @@ class AuditBook:
                 kind=Kind(kind),
                 author=who,
                 trace_sha256=self._trace_sha256,
-                decision=decision,
+                decision=max(0, decision),
                 said=said,
                 reason=words,
                 blind=not seen,
@@ -138,7 +147,7 @@ class AuditBook:
                 when_s=self._clock(),
             )
         )
-        return event.decision
+        return WHOLE if event.kind is Kind.LEG_END else event.decision
 
     def _add(self, *events: Event) -> None:
         """Store events, and read whatever others have stored since."""

@@ -8,6 +8,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from app.cli import main
+from app.reviews.audit import WHOLE, AuditBook, store_beside
 from app.reviews.events import Event, Kind
 from app.reviews.store import store_of
 from c2nav_engine.contract.outcome import Ordering
@@ -96,6 +97,24 @@ def test_a_merged_trace_carries_the_reviews_of_its_run_under_pseudonyms(run: Pat
         difference = first_difference(a, b)
     assert difference is not None
     assert "review" in str(difference)
+
+
+def test_everything_that_can_be_said_in_the_inspector_can_be_merged(run: Path, tmp_path: Path):
+    trace, out = run / "traces" / "a.mcap", tmp_path / "m.mcap"
+    book = AuditBook(store_beside(trace), read_trace(trace).sha256)
+    for kind, decision in ((Kind.REVEAL, 0), (Kind.WRONG, 1), (Kind.NOTE, 1), (Kind.TAG, 1)):
+        book.add(kind, decision, who="ann", seen=True, words="dark", extra={"tag": "dark"})
+    book.add(Kind.BETTER, 1, who="ann", seen=True, said=Ordering.of("left"))
+    book.add(Kind.LEG_END, WHOLE, who="ann", seen=True, extra={"leg": "0", "at_m": "1.5"})
+    assert book.undo("ann") == WHOLE
+    assert book.redo("ann") == WHOLE
+    assert book.opinions()["ann", WHOLE].leg_ends_m == {0: 1.5}
+    assert export(trace, "--to", "merged", "--out", out) == 0
+    with TraceFile(out) as merged:
+        kinds = [found.kind for found in reviews_of(merged)]
+    assert sorted(kinds) == sorted(
+        ["reveal", "wrong", "note", "tag", "better", "leg-end", "undo", "redo"]
+    )
 
 
 @pytest.mark.parametrize(
