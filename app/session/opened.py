@@ -128,7 +128,6 @@ class Opening:
     reasked: ByDecision = field(default_factory=lambda: NOTHING)
     world: Callable[[], World] | None = None
 
-
     @property
     def floor(self) -> Callable[[], Surface] | None:
         """Loads the floor of a recording, or gives that of the live episode."""
