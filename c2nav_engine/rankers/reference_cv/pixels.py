@@ -1,4 +1,4 @@
-"""What the pixels of one JPEG show: spots of a named colour, and how far the view reaches.
+"""What the pixels of one JPEG show: spots of a named colour, and how much there is far off.
 
 The only module of this ranker that touches OpenCV. Pictures are read at most 128 px wide, so a
 view costs a few milliseconds.
