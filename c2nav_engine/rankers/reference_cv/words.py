@@ -1,8 +1,8 @@
 """What the words of a leg ask to look for: coloured things, turns, and what to leave behind.
 
 The vocabulary is common English colour names and a few things that have a colour of their own.
-Of nouns it knows only where such a thing stands: on a wall, low on the floor, tall, on furniture. It
-does not know what a sofa looks like, but that it is red, and no taller than the camera.
+Of nouns it knows only where such a thing stands: on a wall, low on the floor, tall, on furniture.
+It does not know what a sofa looks like, but that it is red, and no taller than the camera.
 """
 
 from __future__ import annotations
