@@ -1,6 +1,8 @@
 """Every panel in light and dark, as pictures for the docs and the README.
 
-python -m tests.helpers.gallery TRACE --scenes DIR --out docs/gallery
+    python -m tests.helpers.gallery TRACE --scenes DIR --out docs/gallery
+
+`tests/browser/test_gallery.py` walks the same views and measures their layout.
 """
 
 from __future__ import annotations
@@ -14,6 +16,9 @@ from c2nav_engine.experiments.spec import Setting
 from tests.helpers.page import Visit, chromium, inspector, picture, visit
 
 Arrange = Callable[[Visit], None]
+
+SMALL, LARGE = (1280, 720), (1920, 1080)
+"""The windows in which everything must fit."""
 
 
 def tab(*names: str) -> Arrange:
@@ -41,6 +46,16 @@ def send(command: str) -> Arrange:
     return lambda seen: seen.page.evaluate(f"c2nav.send({command})")
 
 
+def key(name: str) -> Arrange:
+    """Press a key."""
+    return lambda seen: seen.page.keyboard.press(name)
+
+
+def until(script: str) -> Arrange:
+    """Wait until an expression over the state holds."""
+    return lambda seen: seen.until(script)
+
+
 def then(*steps: Arrange) -> Arrange:
     """One after the other."""
 
@@ -63,43 +78,53 @@ def shots(seen: Visit) -> dict[str, Arrange]:
     marks = seen.state()["timeline"]["marks"]
     half = marks[len(marks) // 2]["decision"]
     election = first(seen, 0, after=half // 2)
-    found: dict[str, Arrange] = {
+    looks = [m["decision"] for m in marks if "look-back" in m["words"]]
+    return {
         "decision": then(
             go(election), send("'layer', {name: 'goal', on: true}"), tab("Decision", "Run")
         ),
-        "transition-sketch": then(go(first(seen, 1, after=half // 3)), tab("Sketch", "Branches")),
-        "arriving-ladder": then(go(marks[-1]["decision"]), tab("Ladder", "Review")),
+        "ranking": then(key("2"), until("s.decision.source === 'draft'"), tab("Export")),
+        "fork-offer": then(key("Enter"), until("s.offer"), tab("Branches")),
+        "transition-sketch": then(
+            key("Escape"), go(first(seen, 1, after=half // 3)), tab("Sketch", "Review")
+        ),
+        "look-back": then(go(looks[0] if looks else election), tab("Look-back", "Export")),
+        "arriving-ladder": then(go(marks[-1]["decision"]), tab("Ladder", "Branches")),
         "asked-place": then(
             go(election),
             tab("Decision", "Run"),
             send("'place', {goal: true}"),
-            lambda seen: seen.until("s.timeline.place"),
+            until("s.timeline.place"),
         ),
         "follow": then(send("'forget_place'"), send("'camera', {mode: 'follow'}")),
-        "keys": then(send("'camera', {mode: 'free'}"), lambda seen: seen.page.keyboard.press("?")),
+        "top-down": send("'camera', {mode: 'top'}"),
+        "ego": send("'camera', {mode: 'ego'}"),
+        "keys": then(send("'camera', {mode: 'free'}"), key("?")),
     }
-    looks = [m["decision"] for m in marks if "look-back" in m["words"]]
-    if looks:
-        found["look-back"] = then(go(looks[0]), tab("Look-back", "Export"))
-    return found
 
 
 def main() -> None:
-    """Make the gallery."""
+    """Make the gallery: light in the large window, dark in the small one."""
     reader = argparse.ArgumentParser(description=__doc__)
     reader.add_argument("trace", type=Path)
     reader.add_argument("--scenes", default="")
     reader.add_argument("--out", type=Path, required=True)
+    reader.add_argument("--only", default="", help="names of views, with commas between")
     given = reader.parse_args()
     setting = Setting(source="builtin", scenes=given.scenes, profile="vlnce")
     opened = opened_traces((given.trace,), setting)
-    with chromium() as browser, inspector(opened) as (url, _):
-        for dark in (False, True):
-            with visit(browser, url, dark=dark) as seen:
-                seen.page.wait_for_timeout(8000)  # the mesh of a large scene
-                for name, arrange in shots(seen).items():
-                    theme = "dark" if dark else "light"
-                    picture(given.out, f"{name}-{theme}", seen, arrange=arrange)
+    for dark, size in ((False, LARGE), (True, SMALL)):
+        with (
+            chromium() as browser,
+            inspector(opened) as (url, _),
+            visit(browser, url, size=size, dark=dark) as seen,
+        ):
+            seen.until_node("/scene/section")
+            for name, arrange in shots(seen).items():
+                theme = "dark" if dark else "light"
+                if given.only and name not in given.only.split(","):
+                    continue
+                picture(given.out, f"{name}-{theme}", seen, arrange=arrange)
 
 
 if __name__ == "__main__":

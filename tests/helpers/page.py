@@ -37,7 +37,7 @@ FLAGS = [
 ]
 """Software WebGL, and no traffic of the browser's own."""
 
-PATIENCE_MS = 60_000
+PATIENCE_MS = 120_000
 
 MOST_BYTES = 250_000
 """Of one picture that is kept."""
@@ -156,7 +156,7 @@ def visit(
         ),
     )
     page.on("websocket", lambda wire: seen.hosts.add(wire.url.split("/")[2]))
-    page.goto(url)
+    page.goto(url, timeout=PATIENCE_MS)
     page.wait_for_selector("canvas[data-engine]", state="attached", timeout=PATIENCE_MS)
     page.wait_for_selector("rank-strip", state="attached", timeout=PATIENCE_MS)
     seen.until("s.decision")
