@@ -28,8 +28,6 @@ from tests.helpers.questions import question
 from tests.helpers.serve_tiny_qwen import serving
 from tests.helpers.tiny_qwen import build_tiny_qwen
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
