@@ -13,7 +13,7 @@ import argparse
 import json
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -175,7 +175,7 @@ def record(source: Source, path: Path, *, max_steps: int) -> None:
 
 
 @contextmanager
-def _replayed(plan: Plan) -> Iterator[tuple[Served, Any]]:
+def _replayed(plan: Plan) -> Generator[tuple[Served, Any]]:
     words = [str(recording(plan)), *plan.words]
     with (
         served(words, cwd=plan.folder) as server,
@@ -341,6 +341,16 @@ def measure(
         for part in parts:
             found |= PARTS[part](plan)
     return found
+
+
+def measure_step(scenes: Path | None = None) -> Figures:
+    """The step alone, which takes a minute."""
+    return measure(scenes, parts=("step",))
+
+
+def measure_rest(scenes: Path | None = None) -> Figures:
+    """Everything but the step, which takes many minutes."""
+    return measure(scenes, parts=tuple(part for part in PARTS if part != "step"))
 
 
 def main() -> None:

@@ -30,10 +30,12 @@ class Bench:
     Attributes:
         keys: Names in the table.
         measure: Scenes folder → values by key; raises `MissingExtra` where something is missing.
+        only_named: Whether it takes minutes of its own and so is left out of "all of them".
     """
 
     keys: tuple[str, ...]
     measure: Callable[[Path | None], Measured]
+    only_named: bool = False
 
 
 def _rendering(key: str, *, needs_file: bool = False) -> Callable[[Path | None], Measured]:
@@ -83,12 +85,19 @@ BENCHES: Mapping[str, Bench] = {
     "large": Bench(("view_cost_10m_over_100k",), _rendering("view_cost_10m_over_100k")),
     "workers": Bench(("workers2_over_1",), _module("batch")),
     "lanes": Bench(("lanes8_over_1",), _module("batch", "measure_lanes")),
-    "cases": Bench(("cases_filter_2000_ms", "cases_filter_100000_ms"), _module("cases")),
-    "page": Bench(
+    "cases": Bench(
+        ("cases_filter_2000_ms", "cases_filter_100000_ms"), _module("cases"), only_named=True
+    ),
+    "step": Bench(
         (
             "step_click_to_picture_p50_ms",
             "step_click_to_picture_p95_ms",
             "step_server_processor_ms",
+        ),
+        _module("page", "measure_step"),
+    ),
+    "page": Bench(
+        (
             "scrub_settled_ms",
             "scrub_ends_right",
             "scrub_decisions",
@@ -104,7 +113,8 @@ BENCHES: Mapping[str, Bench] = {
             "memory_growth_mb",
             "memory_steps",
         ),
-        _module("page"),
+        _module("page", "measure_rest"),
+        only_named=True,
     ),
 }
 """Benchmarks by the name that the command line takes."""
@@ -112,7 +122,9 @@ BENCHES: Mapping[str, Bench] = {
 
 def bench(
     names: Annotated[
-        tuple[str, ...], tyro.conf.Positional, tyro.conf.arg(metavar="NAME…", help="All of them.")
+        tuple[str, ...],
+        tyro.conf.Positional,
+        tyro.conf.arg(metavar="NAME…", help="All but `cases` and `page`, which take minutes."),
     ] = (),
     scenes: ScenesOpt = None,
     json: JsonOpt = False,
@@ -123,7 +135,8 @@ def bench(
         message = f"expected benchmarks among {', '.join(BENCHES)}; came {', '.join(unknown)}"
         raise UsageError(message)
     found: dict[str, float | None] = {}
-    for name in names or tuple(BENCHES):
+    usual = tuple(name for name, each in BENCHES.items() if not each.only_named)
+    for name in names or usual:
         found.update(_measured(BENCHES[name], scenes or _shared_scenes()))
     if json:
         print_json(found)
