@@ -12,7 +12,7 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -101,7 +101,7 @@ def _status_mb(pid: int, field: str) -> float:
 
 
 @contextmanager
-def served(words: Sequence[str], *, cwd: Path) -> Iterator[Served]:
+def served(words: Sequence[str], *, cwd: Path) -> Generator[Served]:
     """Run `c2nav inspect WORDS` on a free loopback port; live traces go below `cwd`."""
     if not Path("/proc/self/status").is_file():
         message = "the page's benchmarks read processor time and memory from /proc"
@@ -129,7 +129,7 @@ def _address(process: subprocess.Popen[str]) -> str:
 
 
 @contextmanager
-def chromium() -> Iterator[Any]:
+def chromium() -> Generator[Any]:
     """A browser; raises `MissingExtra` where there is none."""
     try:
         from playwright.sync_api import sync_playwright
@@ -149,7 +149,7 @@ def chromium() -> Iterator[Any]:
 
 
 @contextmanager
-def opened(browser: Any, url: str) -> Iterator[Any]:
+def opened(browser: Any, url: str) -> Generator[Any]:
     """A page that stands at a decision with all its pictures and its timeline."""
     width, height = WINDOW_PX
     page = browser.new_page(viewport={"width": width, "height": height})
