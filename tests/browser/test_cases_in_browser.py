@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import socket
-import threading
-import time
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,6 +14,7 @@ from app.gateway.runs import RunPages, runs_application
 from app.pages.index import curation
 from app.pages.library import Library
 from tests.helpers.cases import fake_run
+from tests.helpers.loopback import on_loopback
 
 pytestmark = pytest.mark.browser
 
@@ -26,18 +24,9 @@ PATIENCE_MS = 180_000
 
 @contextmanager
 def served(library: Library) -> Generator[str]:
-    listener = socket.create_server(("127.0.0.1", 0))
     config = uvicorn.Config(runs_application(RunPages(library)), ws="none", log_level="warning")
-    server = uvicorn.Server(config)
-    thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
-    thread.start()
-    while not server.started:
-        time.sleep(0.02)
-    try:
-        yield f"http://127.0.0.1:{listener.getsockname()[1]}/"
-    finally:
-        server.should_exit = True
-        thread.join(timeout=30.0)
+    with on_loopback(uvicorn.Server(config)) as address:
+        yield address
 
 
 @pytest.fixture

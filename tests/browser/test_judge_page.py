@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import base64
 import json
-import socket
-import threading
-import time
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from pathlib import Path
@@ -28,6 +25,7 @@ from app.reviews.store import export_lines, store_of
 from app.reviews.study import Person, Study
 from c2nav_engine.contract.prompt import Prompt
 from tests.helpers.judged import judged_run, study_with
+from tests.helpers.loopback import on_loopback
 
 pytestmark = pytest.mark.browser
 
@@ -37,18 +35,10 @@ SHOWN = "n => document.body.dataset.shown === String(n)"
 
 @contextmanager
 def served(run: Path) -> Generator[str]:
-    listener = socket.create_server(("127.0.0.1", 0))
     app = judging_application(desks_of([run]))
     server = uvicorn.Server(uvicorn.Config(app, ws="none", log_level="warning"))
-    thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
-    thread.start()
-    while not server.started:
-        time.sleep(0.02)
-    try:
-        yield f"http://127.0.0.1:{listener.getsockname()[1]}/judge?token="
-    finally:
-        server.should_exit = True
-        thread.join(timeout=10.0)
+    with on_loopback(server) as address:
+        yield f"{address}judge?token="
 
 
 @pytest.fixture

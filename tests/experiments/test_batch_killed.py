@@ -109,7 +109,6 @@ def test_an_interrupt_keeps_what_is_finished_and_writes_the_tables(tmp_path: Pat
 
 
 @pytest.mark.slow
-@pytest.mark.skipif("'slow' not in (config.option.markexpr or '')", reason="20 kills; -m slow")
 @pytest.mark.parametrize("seed", range(20))
 def test_killed_at_a_random_moment(tmp_path: Path, seed: int) -> None:
     draw = random.Random(seed)

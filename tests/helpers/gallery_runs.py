@@ -6,9 +6,6 @@ python -m tests.helpers.gallery_runs RUNS --out docs/gallery
 from __future__ import annotations
 
 import argparse
-import socket
-import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,6 +15,7 @@ from playwright.sync_api import Browser
 from app.gateway.runs import RunPages, runs_application
 from app.pages.library import Library
 from app.pages.matrix import arms, matrix_of
+from tests.helpers.loopback import on_loopback
 from tests.helpers.page import chromium
 
 SIZE = (1600, 900)
@@ -55,20 +53,14 @@ def main() -> None:
     given = reader.parse_args()
     library = Library(given.runs)
     library.refresh()
-    listener = socket.create_server(("127.0.0.1", 0))
     app = runs_application(RunPages(library))
     server = uvicorn.Server(uvicorn.Config(app, ws="none", log_level="warning", lifespan="off"))
-    threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True).start()
-    while not server.started:
-        time.sleep(0.02)
-    base = f"http://127.0.0.1:{listener.getsockname()[1]}/"
     given.out.mkdir(parents=True, exist_ok=True)
-    with chromium() as browser:
+    with on_loopback(server) as base, chromium() as browser:
         for name, address in pages(library):
             for dark in (False, True):
                 path = given.out / f"{name}-{'dark' if dark else 'light'}.jpg"
                 shoot(browser, base + address, path, dark=dark)
-    server.should_exit = True
     library.close()
 
 

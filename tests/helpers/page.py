@@ -5,9 +5,6 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import socket
-import threading
-import time
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -22,6 +19,7 @@ from app.gateway.serving import Server, application
 from app.inspector.shell import Shell
 from app.session.opened import Opened
 from app.session.worker import Session
+from tests.helpers.loopback import on_loopback
 
 FLAGS = [
     "--no-sandbox",
@@ -49,8 +47,6 @@ def inspector(opened: Opened) -> Generator[tuple[str, Session]]:
     session = Session(opened)
     shell = Shell(session)
     session.start()
-    listener = socket.socket()
-    listener.bind(("127.0.0.1", 0))
     config = uvicorn.Config(
         application(session, shell),
         ws="websockets-sansio",
@@ -58,16 +54,10 @@ def inspector(opened: Opened) -> Generator[tuple[str, Session]]:
         log_level="warning",
         timeout_graceful_shutdown=1,
     )
-    server = Server(config)
-    thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
-    thread.start()
-    while not server.started:
-        time.sleep(0.02)
     try:
-        yield f"http://127.0.0.1:{listener.getsockname()[1]}/", session
+        with on_loopback(Server(config)) as address:
+            yield address, session
     finally:
-        server.should_exit = True
-        thread.join(timeout=10.0)
         session.close()
         shell.close()
 

@@ -39,7 +39,7 @@ def outcome_of(entry: Entry) -> str:
     return entry.outcome
 
 
-def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:  # noqa: ARG001 # buttons carry commands
+def build(gui: viser.GuiApi, _dispatch: Dispatch) -> Update:
     """Build the list; it is empty for a source of live episodes."""
     chosen = Filter()
     latest: list[Snapshot] = []

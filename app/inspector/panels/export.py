@@ -13,7 +13,7 @@ from app.session.snapshot import Snapshot
 from app.session.wording import ranking
 
 
-def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:  # noqa: ARG001 # the page copies
+def build(gui: viser.GuiApi, _dispatch: Dispatch) -> Update:
     """Build the panel."""
     block = Html(gui)
     return lambda snapshot: block.show(_block(snapshot))

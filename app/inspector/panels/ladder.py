@@ -13,7 +13,7 @@ from c2nav_engine.navigator.requests import LadderState
 _SIGNS = {-1: "− against", 0: "0 open", 1: "+ for stopping"}
 
 
-def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:  # noqa: ARG001 # nothing to press
+def build(gui: viser.GuiApi, _dispatch: Dispatch) -> Update:
     """Build the panel."""
     block = Html(gui)
     return lambda snapshot: block.show(_block(snapshot))

@@ -22,7 +22,7 @@ _HEAD_PX, _GAP_PX = 26, 8
 _EMPTY = np.full((1, 1, 3), 255, np.uint8)
 
 
-def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:  # noqa: ARG001 # nothing to press
+def build(gui: viser.GuiApi, _dispatch: Dispatch) -> Update:
     """Build the panel."""
     gui.add_html("<image-pair></image-pair>")
     words = Html(gui)

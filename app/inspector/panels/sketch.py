@@ -14,7 +14,7 @@ _SHOWN = 8
 """Newest entries on show."""
 
 
-def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:  # noqa: ARG001 # nothing to press
+def build(gui: viser.GuiApi, _dispatch: Dispatch) -> Update:
     """Build the panel."""
     block = Html(gui)
     return lambda snapshot: block.show(_block(snapshot))

@@ -19,7 +19,7 @@ LISTED = 10
 """Decisions of (a) that are listed."""
 
 
-def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:  # noqa: ARG001 # buttons carry commands
+def build(gui: viser.GuiApi, _dispatch: Dispatch) -> Update:
     """Build the panel."""
     block = Html(gui)
     return lambda snapshot: block.show(content(snapshot))

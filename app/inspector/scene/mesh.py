@@ -72,6 +72,7 @@ class Mesh:
                 handle.visible = shown
 
     def _replace(self, mesh: Scene, height_m: float) -> None:
+        """Runs in a thread of its own, where nobody else would hear of what goes wrong."""
         try:
             stale, self._handles = self._handles, []
             kept: set[str] = set()
