@@ -19,7 +19,9 @@ const tabs = h("div", { id: "c2-tabs" });
 const ego = h("div", { hidden: true }, "rendered here, not what the robot saw");
 const bare = h("div", { hidden: true }, "map without the scene");
 const seen = h("div", { hidden: true });
-const pills = h("div", { id: "c2-pills" }, banner, bare, seen, ego, tabs);
+const beside = Object.entries(JSON.parse(document.getElementById("c2-menu-words")?.textContent ?? "{}"));
+const menu = h("nav", { id: "c2-menu", "aria-label": "pages" }, ...beside.map(([name, words]) => h("a", { href: name }, words)));
+const pills = h("div", { id: "c2-pills" }, banner, bare, seen, ego, tabs, menu);
 top.append(document.createElement("route-strip"), pills, document.createElement("wait-card"));
 const lower = h("div", { id: "c2-low" }, document.createElement("timeline-bar"));
 const toasts = h("div", { id: "c2-toasts", role: "status", "aria-live": "polite" });
@@ -60,6 +62,8 @@ subscribe((now, changed) => {
   }
   if (changed.has("view")) {
     ego.hidden = now.view.camera !== "ego";
+    // Those pages say how episodes ended.
+    menu.hidden = now.view.blind || beside.length === 0;
   }
   if (changed.has("place") || changed.has("glimpse")) {
     const age = now.glimpse && !now.place.at_decision ? now.place.step - now.glimpse.step : 0;

@@ -152,31 +152,37 @@ def _stamp(path: Path) -> object:
     return None if found is None else (found.st_size, found.st_mtime_ns)
 
 
-def agreement_routes(desk: AgreementDesk) -> APIRouter:
-    """The page, and the decisions behind its cells."""
+def agreement_routes(desk: AgreementDesk, menu: Sequence[str]) -> APIRouter:
+    """The page, and the decisions behind its cells; `menu` names the pages served with it."""
     router = APIRouter(include_in_schema=False)
 
     @router.get("/agreement")
     def agreement(asked: Annotated[Asked, Query()]) -> Response:
         runs = tuple(run.name for run in desk.runs)
         if not desk.answers().given:
-            return HTMLResponse(nobody_page(runs))
+            return HTMLResponse(nobody_page(runs, menu=menu))
         if asked.said_a and asked.said_b:
             said_a, said_b = key_words(asked.said_a), key_words(asked.said_b)
             title = f"{_slot(asked.slot)}: {said_a} against {said_b}"
             back = link("agreement", kind=asked.kind, a=asked.a, b=asked.b)
             found = _behind(desk, asked)
-            return HTMLResponse(differences_page(title, found, runs=runs, back=back))
-        return HTMLResponse(agreement_page(_shown(desk, asked)))
+            page = differences_page(title, found, runs=runs, back=back, menu=menu)
+            return HTMLResponse(page)
+        return HTMLResponse(agreement_page(_shown(desk, asked), menu=menu))
 
     return router
 
 
-def mount_agreement(app: FastAPI, opened: Opened) -> None:
-    """Add the page to the inspector where it is open on the traces of runs."""
+def has_agreement(opened: Opened) -> bool:
+    """Whether answers are compared: where the inspector is open on the traces of runs."""
     entries = [entry.entry_id for entry in opened.entries]
-    if entries and all(entry.endswith(".mcap") for entry in entries):
-        app.include_router(agreement_routes(AgreementDesk(opened)))
+    return bool(entries) and all(entry.endswith(".mcap") for entry in entries)
+
+
+def mount_agreement(app: FastAPI, opened: Opened, *, menu: Sequence[str]) -> None:
+    """Add the page to the inspector where there are answers to compare."""
+    if has_agreement(opened):
+        app.include_router(agreement_routes(AgreementDesk(opened), menu))
 
 
 # ---------------------------------------------------------------- what the page shows

@@ -22,6 +22,7 @@ from app.pages.compare import compare_page, pair_page
 from app.pages.index import curation, query
 from app.pages.index.refresh import EXPORTS
 from app.pages.library import Library, OpenedTraces
+from app.pages.page import ABOUT_RUNS
 from app.pages.run import run_page, stamp
 from app.session.story import Story
 from c2nav_engine.errors import C2NavError, InputError
@@ -41,10 +42,12 @@ class RunPages:
     Attributes:
         library: The runs.
         plan_of: Floor and walls around a recorded episode; empty where its scene is not there.
+        menu: Names of `page.MENU` that stand behind the same port.
     """
 
     library: Library
     plan_of: Callable[[Story], Plan] = lambda _: Plan()
+    menu: tuple[str, ...] = ABOUT_RUNS
 
 
 class Said(BaseModel):
@@ -101,17 +104,19 @@ class Caption(Said):
 def run_pages(pages: RunPages) -> APIRouter:
     """Routes of the pages about the runs of a library."""
     router = APIRouter(include_in_schema=False)
-    _reading(router, pages.library)
-    _comparing(router, pages.library)
+    _reading(router, pages)
+    _comparing(router, pages)
     _changing(router, pages)
     return router
 
 
-def _reading(router: APIRouter, library: Library) -> None:
+def _reading(router: APIRouter, pages: RunPages) -> None:
+    library, menu = pages.library, pages.menu
+
     @router.get("/run")
     def run(run: str = "", against: str = "") -> Response:
-        runs = library.runs()
-        return _page(lambda: run_page(library, run or (runs[0] if runs else "."), against=against))
+        name = run or next(iter(library.runs()), ".")
+        return _page(lambda: run_page(library, name, against=against, menu=menu))
 
     @router.get("/run/stamp")
     def run_stamp(run: str) -> dict[str, str]:
@@ -122,7 +127,7 @@ def _reading(router: APIRouter, library: Library) -> None:
     def cases(
         q: Annotated[str, Query(max_length=2000)] = "", sort: str = "run", page: int = 1
     ) -> Response:
-        return _page(lambda: cases_page(library, query.Query(q, sort), page=page))
+        return _page(lambda: cases_page(library, query.Query(q, sort), page=page, menu=menu))
 
     @router.get("/cases/picture/{sha256}.jpg")
     def picture(sha256: Annotated[str, Path(pattern=_SHA)]) -> Response:
@@ -136,14 +141,15 @@ def _reading(router: APIRouter, library: Library) -> None:
         return Response(found.jpeg, media_type="image/jpeg", headers=headers)
 
 
-def _comparing(router: APIRouter, library: Library) -> None:
+def _comparing(router: APIRouter, pages: RunPages) -> None:
+    library, menu = pages.library, pages.menu
     opened = OpenedTraces(library)
 
     @router.get("/compare")
     def compare(a: str = "", b: str = "", cell: str = "") -> Response:
         if _IS_SHA.fullmatch(a) and _IS_SHA.fullmatch(b):
-            return _page(lambda: pair_page(library, a, b))
-        return _page(lambda: compare_page(library, a, b, cell=cell))
+            return _page(lambda: pair_page(library, a, b, menu=menu))
+        return _page(lambda: compare_page(library, a, b, cell=cell, menu=menu))
 
     @router.get("/compare/picture/{trace}/{sha256}.jpg")
     def picture(

@@ -9,12 +9,12 @@ import threading
 import webbrowser
 from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import uvicorn
 from fastapi import FastAPI
 
-from app.gateway.agreement import mount_agreement
+from app.gateway.agreement import has_agreement, mount_agreement
 from app.gateway.alone import listen, names_of
 from app.gateway.api import api
 from app.gateway.assets import assets, serve_assets
@@ -25,6 +25,7 @@ from app.gateway.judging import mount_judging
 from app.gateway.runs import RunPages, mount_runs
 from app.gateway.shell_page import ShellPage
 from app.inspector.shell import Shell
+from app.pages.page import ABOUT_RUNS
 from app.session.opened import Opened
 from app.session.worker import Session
 
@@ -47,16 +48,25 @@ class Address:
         return f"http://{self.host}:{self.port}/"
 
 
-def application(session: Session, shell: Shell, *, names: tuple[str, ...] = ()) -> FastAPI:
+def menu_of(opened: Opened, runs: RunPages | None) -> tuple[str, ...]:
+    """Names of `MENU` that are served for what was opened."""
+    about = () if runs is None else ABOUT_RUNS
+    return (*about, *(("agreement",) if has_agreement(opened) else ()), "inspector")
+
+
+def application(
+    session: Session, shell: Shell, *, names: tuple[str, ...] = (), menu: tuple[str, ...] = ()
+) -> FastAPI:
     """The gateway as an ASGI application.
 
     Args:
         session: What is shown; must be started by the caller.
         shell: Its viser page.
         names: Host names that pass beside loopback.
+        menu: Names of `MENU`: the pages behind the same port, which the caller mounts.
     """
     feed = Feed(session)
-    page = ShellPage(shell.port)
+    page = ShellPage(shell.port, menu)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncGenerator[None]:
@@ -120,11 +130,12 @@ def serve(
     shell = Shell(session)
     session.start()
     try:
-        app = application(session, shell, names=names_of(host))
+        menu = menu_of(opened, runs)
+        app = application(session, shell, names=names_of(host), menu=menu)
         mount_judging(app, [entry.entry_id for entry in opened.entries])
-        mount_agreement(app, opened)
+        mount_agreement(app, opened, menu=menu)
         if runs is not None:
-            mount_runs(app, runs)
+            mount_runs(app, replace(runs, menu=menu))
             runs.library.start()
         config = uvicorn.Config(
             app,

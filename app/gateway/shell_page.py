@@ -6,6 +6,8 @@ import asyncio
 import contextlib
 import gzip
 import http.client
+import json
+from collections.abc import Sequence
 
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
@@ -15,6 +17,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
 from app.gateway.doors import VISER_POLICY
+from app.pages.page import MENU
 from c2nav_engine.errors import InternalError
 
 _TAGS = (
@@ -34,15 +37,16 @@ _SHARE = b"ShareUrlRequest"
 class ShellPage:
     """Proxies one viser server on a loopback port."""
 
-    def __init__(self, port: int) -> None:
-        """Remember where viser listens."""
+    def __init__(self, port: int, menu: Sequence[str] = ()) -> None:
+        """Remember where viser listens, and which pages of `MENU` stand beside it."""
         self._port = port
+        self._menu = menu
         self._page = b""
         self._packed = b""
 
     async def fetch(self) -> None:
         """Fetch viser's page once and add our tags."""
-        self._page = with_tags(await asyncio.to_thread(self._fetched))
+        self._page = with_tags(await asyncio.to_thread(self._fetched), self._menu)
         self._packed = await asyncio.to_thread(gzip.compress, self._page, 6)
 
     def _fetched(self) -> bytes:
@@ -115,8 +119,8 @@ async def _to_page(page: WebSocket, viser: ClientConnection) -> None:
             await (page.send_bytes(frame) if isinstance(frame, bytes) else page.send_text(frame))
 
 
-def with_tags(page: bytes) -> bytes:
-    """Our tags at the end of the head.
+def with_tags(page: bytes, menu: Sequence[str] = ()) -> bytes:
+    """Our tags and the menu's words at the end of the head.
 
     viser's page carries its code inside the head, which may hold the same letters; so the last
     closing tag counts.
@@ -125,4 +129,6 @@ def with_tags(page: bytes) -> bytes:
     if end < 0:
         message = "expected viser's page to have a head; its version is not the pinned one"
         raise InternalError(message)
-    return page[:end] + _TAGS + page[end:]
+    beside = {name: MENU[name] for name in menu if name != "inspector"}
+    words = f'<script type="application/json" id="c2-menu-words">{json.dumps(beside)}</script>'
+    return page[:end] + words.encode() + _TAGS + page[end:]

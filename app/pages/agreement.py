@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.pages.page import render
+from app.pages.page import framed
 
 WIDTH_PX = 132
 """Of the drawing of an interval."""
@@ -202,20 +202,26 @@ class Difference:
     decision: int
 
 
-def agreement_page(shown: Shown) -> str:
-    """The page."""
-    return render("agreement.html.j2", here="agreement", shown=shown, width=WIDTH_PX)
+def agreement_page(shown: Shown, *, menu: Sequence[str]) -> str:
+    """The page; `menu` as in `framed`."""
+    return framed("agreement.html.j2", here="agreement", menu=menu, shown=shown, width=WIDTH_PX)
 
 
-def nobody_page(runs: Sequence[str]) -> str:
+def nobody_page(runs: Sequence[str], *, menu: Sequence[str]) -> str:
     """The page of runs about which nobody has answered anything."""
-    return render("agreement_empty.html.j2", here="agreement", runs=runs)
+    return framed("agreement_empty.html.j2", here="agreement", menu=menu, runs=runs)
 
 
 def differences_page(
-    title: str, found: Sequence[Difference], *, runs: Sequence[str], back: str
+    title: str, found: Sequence[Difference], *, runs: Sequence[str], back: str, menu: Sequence[str]
 ) -> str:
     """The decisions behind one cell; `back` is the address of the page with that cell."""
-    return render(
-        "agreement_cell.html.j2", here="agreement", title=title, found=found, runs=runs, back=back
+    return framed(
+        "agreement_cell.html.j2",
+        here="agreement",
+        menu=menu,
+        title=title,
+        found=found,
+        runs=runs,
+        back=back,
     )

@@ -10,7 +10,7 @@ from app.pages.index import curation
 from app.pages.index.finding import Case, Found, choices
 from app.pages.index.query import SORTS, Query, term, terms, toggled
 from app.pages.library import Library
-from app.pages.page import render
+from app.pages.page import framed
 from c2nav_engine.errors import InputError
 from c2nav_engine.experiments.tags.endings import RULES as ENDING_RULES
 from c2nav_engine.experiments.tags.endings import Ending
@@ -40,7 +40,7 @@ class Facet:
     on: bool
 
 
-def cases_page(library: Library, query: Query, *, page: int = 1) -> str:
+def cases_page(library: Library, query: Query, *, page: int = 1, menu: Sequence[str]) -> str:
     """The page; a line that is not understood is said on it, above all episodes."""
     problem = ""
     try:
@@ -52,9 +52,10 @@ def cases_page(library: Library, query: Query, *, page: int = 1) -> str:
     chosen = next(
         (each for each in curation.sets(store) if f"set:{each.name}" in _named(query)), None
     )
-    return render(
+    return framed(
         "cases.html.j2",
         here="cases",
+        menu=menu,
         query=query,
         problem=problem,
         found=found,

@@ -2,32 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from app.pages.library import Library
 from app.pages.matrix import CELLS, Arm, Matrix, arm_named, arms, matrix_of
-from app.pages.page import render
+from app.pages.page import framed
 from app.pages.pair import MAP_PX, pair_of
 
 
-def pair_page(library: Library, a: str, b: str) -> str:
+def pair_page(library: Library, a: str, b: str, *, menu: Sequence[str]) -> str:
     """Two episodes; raises `InputError` for a digest that is not indexed, `TraceError`."""
-    return render(
+    return framed(
         "pair.html.j2",
         here="compare",
+        menu=menu,
         view=pair_of(library, a, b),
         width=MAP_PX[0],
         height=MAP_PX[1],
     )
 
 
-def compare_page(library: Library, a: str = "", b: str = "", *, cell: str = "") -> str:
+def compare_page(
+    library: Library, a: str = "", b: str = "", *, cell: str = "", menu: Sequence[str]
+) -> str:
     """Two configurations, the first two where none are named; raises `InputError`."""
     known = arms(library)
     first = arm_named(library, a) if a else _or_none(known, 0)
     second = arm_named(library, b) if b else _or_none(known, 1)
     matrix = matrix_of(library, first, second) if first and second else None
-    return render(
+    return framed(
         "compare.html.j2",
         here="compare",
+        menu=menu,
         arms=known,
         a=first,
         b=second,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from typing import Any
 from urllib.parse import quote, urlencode
 
@@ -12,6 +13,18 @@ import jinja2
 from app.pages.index.columns import Value
 from app.pages.index.drawing import map_of
 from c2nav_engine.experiments.tags.rules import TAGS
+
+MENU = {
+    "run": "Run",
+    "cases": "Cases",
+    "compare": "Compare",
+    "agreement": "Agreement",
+    "inspector": "Inspector",
+}
+"""Pages that can stand behind one port, in the order in which the menu names them."""
+
+ABOUT_RUNS = ("run", "cases", "compare")
+"""The pages of this package that need nothing but a folder of runs."""
 
 
 def figure_words(value: Value, digits: int = 1) -> str:
@@ -38,9 +51,21 @@ _TEMPLATES = jinja2.Environment(
 )
 _TEMPLATES.filters["figure"] = figure_words
 _TEMPLATES.filters["json"] = json.dumps
-_SHARED = {"link": link, "map_of": map_of, "TAGS": TAGS}
+_SHARED = {"MENU": MENU, "link": link, "map_of": map_of, "TAGS": TAGS}
 
 
 def render(template: str, **facts: Any) -> str:
     """A whole document."""
     return _TEMPLATES.get_template(template).render(**_SHARED, **facts)
+
+
+def framed(template: str, *, here: str, menu: Sequence[str], **facts: Any) -> str:
+    """A page in the frame that all of them share.
+
+    Args:
+        template: Its file.
+        here: Its own name in `MENU`.
+        menu: The pages that are served with it: the frame links to no other.
+        **facts: What the template shows.
+    """
+    return render(template, here=here, menu=menu, **facts)

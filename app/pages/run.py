@@ -9,7 +9,7 @@ from typing import Any, cast
 from app.pages.index.finding import health, rows
 from app.pages.index.query import term
 from app.pages.library import Library, Tasks
-from app.pages.page import render
+from app.pages.page import framed
 from c2nav_engine.errors import InputError
 from c2nav_engine.experiments.columns import Row
 from c2nav_engine.experiments.estimates import figure
@@ -89,13 +89,14 @@ class ArmView:
     budget: tuple[Block, ...]
 
 
-def run_page(library: Library, run: str, *, against: str = "") -> str:
+def run_page(library: Library, run: str, *, against: str = "", menu: Sequence[str]) -> str:
     """The page; raises `InputError` for a run that is not there.
 
     Args:
         library: The runs.
         run: Which of them.
         against: Another run to hold its manifest against; "" for the presets.
+        menu: As in `framed`.
     """
     for each in (run, *([against] if against else [])):
         if each not in library.runs():
@@ -105,9 +106,10 @@ def run_page(library: Library, run: str, *, against: str = "") -> str:
     manifest = library.manifest(run)
     found = rows(library.store, run)
     counted = health(library.store, run)
-    return render(
+    return framed(
         "run.html.j2",
         here="run",
+        menu=menu,
         run=run,
         name=run if run != "." else library.root.resolve().name,
         runs=library.runs(),

@@ -14,6 +14,7 @@ from starlette.testclient import TestClient
 from app.commands.sources import opened_traces
 from app.gateway import agreement as gateway
 from app.gateway.agreement import AgreementDesk, mount_agreement
+from app.pages.page import MENU
 from app.reviews.agreement import agreements, order_effects
 from app.reviews.answers import Answer, Answers, Rater
 from app.reviews.desk import Desk
@@ -56,7 +57,7 @@ def judged(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def client(run: Path) -> TestClient:
     app = FastAPI()
     traces = sorted((run / "traces").glob("*.mcap"))
-    mount_agreement(app, opened_traces(traces, Setting(source="builtin")))
+    mount_agreement(app, opened_traces(traces, Setting(source="builtin")), menu=MENU)
     return TestClient(app)
 
 
@@ -188,7 +189,8 @@ def test_a_run_without_people_shows_its_models_and_no_page_stands_for_episodes(t
     app = FastAPI()
     source = opened_traces(sorted((run / "traces").glob("*.mcap")), Setting(source="builtin"))
     entries = tuple(type(e)("7", e.label) for e in source.entries)
-    mount_agreement(app, type(source)(source.title, entries, source.first, source.open))
+    named = type(source)(source.title, entries, source.first, source.open)
+    mount_agreement(app, named, menu=MENU)
     assert TestClient(app).get("/agreement").status_code == 404
 
 

@@ -14,6 +14,7 @@ from app.gateway.runs import RunPages, runs_application
 from app.pages.index.columns import Row
 from app.pages.library import Library
 from app.pages.matrix import Arm, matrix_of
+from app.pages.page import MENU
 from app.pages.pair import worded
 from c2nav_engine.contract.outcome import Ordering
 from c2nav_engine.navigator.requests import Ask
@@ -47,7 +48,7 @@ def visit(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient
         digests.append(write_episode(path, episode))
     library = Library(root)
     library.refresh()
-    app = runs_application(RunPages(library))
+    app = runs_application(RunPages(library, menu=tuple(MENU)))
     yield TestClient(app, base_url="http://127.0.0.1"), digests[0], digests[1]
     library.close()
 

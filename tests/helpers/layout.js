@@ -19,7 +19,7 @@
     }
 
   const canvas = box(document.querySelector("canvas[data-engine]"));
-  for (const node of all("#c2-top route-strip, #c2-pills > div, #c2-top wait-card"))
+  for (const node of all("#c2-top route-strip, #c2-pills > *, #c2-top wait-card"))
     if (box(node).left < canvas.left - 1 || box(node).right > canvas.right + 1)
       found.push(`${name(node)} lies over a dock`);
   const bar = box(document.querySelector("timeline-bar"));
