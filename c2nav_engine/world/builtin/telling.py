@@ -18,6 +18,8 @@ _LONG_M = 5.5
 """A way through one room longer than this is told in two legs where it can be."""
 _LAST_M = 1.6
 """Length of the last leg where the way through the last room is long enough to be split."""
+_FAR_END_M = 7.0
+"""No last leg is longer than this: a tenth of real ones is longer than some 5.4 m."""
 _WAYS: dict[str, tuple[str, ...]] = {
     "hallway": ("down", "along", "down"),
     "landing": ("along", "across"),
@@ -47,8 +49,12 @@ class Teller:
         self._random = random
         self._told: set[str] = {route.target.phrase}
 
-    def legs(self, heading_rad: float) -> list[Leg]:
-        """All legs, the first one with what the heading asks for."""
+    def legs(self, heading_rad: float, *, far_end: bool) -> list[Leg]:
+        """All legs, the first one with what the heading asks for.
+
+        A far end is told in one leg with the way to it, so that the last leg begins some rooms
+        or metres before the goal; a near one is a stop clause of its own.
+        """
         visits = self._route.visits
         legs = [self._first(visits[0], visits[1], heading_rad)]
         index = 1
@@ -62,7 +68,20 @@ class Teller:
             else:
                 legs += self._middle(visit, following)
                 index += 1
-        return legs + self._last(visits[-1])
+        legs += self._last(visits[-1])
+        if far_end and len(legs) > 2 and legs[-1].end_m - legs[-3].end_m < _FAR_END_M:
+            *before, way, stop = legs
+            return [*before, Leg(way.text + self._onto_goal(visits[-1]), stop.end_m)]
+        return legs
+
+    def _onto_goal(self, visit: Visit) -> str:
+        """Words that carry a clause on to the goal, a third of them without a stop."""
+        side = ""
+        if abs(visit.turn_rad) > _CLEAR_RAD:
+            side = f" on your {'left' if visit.turn_rad > 0 else 'right'}"
+        onward = self._one_of("and on to", "and over to")
+        stop = self._one_of("", " and stop there", " and wait there")
+        return f" {onward} the {self._route.target.phrase}{side}{stop}"
 
     def _one_of(self, *choices: str) -> str:
         return choices[int(self._random.integers(len(choices)))]
