@@ -5,8 +5,6 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
-from scipy.special import bdtr, bdtrc
-
 from c2nav_engine.experiments.statistics.paired import mcnemar_p
 
 ALPHA = 0.05
@@ -84,6 +82,9 @@ def power(*, only_a: float, only_b: float, n: int, alpha: float = ALPHA) -> floa
     discordance = only_a + only_b
     if discordance == 0.0:
         return 0.0
+    # scipy takes a fifth of a second: what only shows or steps a run does not pay for it.
+    from scipy.special import bdtr, bdtrc
+
     share, total, below = only_a / discordance, 0.0, 0.0
     for discordant in range(n + 1):
         up_to = float(bdtr(discordant, n, discordance))
