@@ -38,6 +38,7 @@ def agree(
         print_json(
             {
                 "answers": len(answers.given),
+                "beside_map": answers.beside_map,
                 "agreement": [_agreement_json(row) for row in pairs],
                 "orders": [_orders_json(row) for row in orders],
             }
@@ -70,6 +71,7 @@ def _orders_json(row: OrderEffects) -> dict[str, object]:
     return {
         "rater": row.rater.name,
         "human": row.rater.human,
+        "seen": row.rater.seen,
         "slot": row.slot,
         "position_consistency": _interval_json(row.consistency),
         "repetition_stability": _interval_json(row.stability),

@@ -69,7 +69,7 @@ def inspect(
     if root is not None:
         opened, runs = with_later_traces(opened, root, setting), pages_of(root, scenes)
     ready = _tell if runs is None else _tell_run
-    serve(opened, host=host, port=port, no_browser=no_browser, ready=ready, runs=runs)
+    serve(opened, host=host, port=port, no_browser=no_browser, ready=ready, runs=runs, beside=with_)
     return 0
 
 

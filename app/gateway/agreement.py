@@ -41,7 +41,7 @@ from app.reviews.agreement import (
 )
 from app.reviews.answers import Answers, Rater
 from app.reviews.audit import store_beside
-from app.reviews.reading import Names, merged, of_people, of_trace
+from app.reviews.reading import Questions, merged, of_people, of_reevaluation, of_trace
 from app.reviews.store import FILE
 from app.reviews.truth import BestElected, best_elected, judging_of
 from app.session.opened import Opened
@@ -55,6 +55,7 @@ _GROUPS = {
     "human-human": "People among themselves",
     "human-model": "People and models",
     "model-model": "Models among themselves",
+    "seen": "◇ People who had seen the model's answer",
     "privileged": "◆ Against a ranker that knows the truth",
 }
 
@@ -67,17 +68,19 @@ class AgreementDesk:
 
     Args:
         opened: What the inspector is open on: its entries are files of traces.
+        beside: Re-evaluations, whose rankers stand beside the recorded ones.
     """
 
-    def __init__(self, opened: Opened) -> None:
+    def __init__(self, opened: Opened, beside: Sequence[Path] = ()) -> None:
         self._opened = opened
+        self._beside = tuple(beside)
         traces = [Path(entry.entry_id).resolve() for entry in opened.entries]
         self.runs = tuple(sorted({store_beside(path).parent for path in traces}))
         self._folders = sorted({path.parent for path in traces})
         self._entry_of = {
             path: entry.entry_id for path, entry in zip(traces, opened.entries, strict=True)
         }
-        self._names: Names = {}
+        self._asked: Questions = {}
         self._models: dict[Path, Answers] = {}
         self._read: tuple[tuple[object, ...], Answers] | None = None
         self._rows: tuple[list[Agreement], list[OrderEffects]] = ([], [])
@@ -117,9 +120,10 @@ class AgreementDesk:
         if self._read is None or self._read[0] != stamp:
             for path in traces:
                 if path not in self._models:
-                    self._models[path] = of_trace(path, self._names)
-            people = [of_people(run, self._names) for run in self.runs]
-            answers = merged([*self._models.values(), *people])
+                    self._models[path] = of_trace(path, self._asked)
+            people = [of_people(run, self._asked) for run in self.runs]
+            again = [of_reevaluation(path, self._asked) for path in self._beside]
+            answers = merged([*self._models.values(), *people, *again])
             self._rows = (agreements(answers), order_effects(answers))
             self._read = (stamp, answers)
         return self._read[1]
@@ -179,10 +183,12 @@ def has_agreement(opened: Opened) -> bool:
     return bool(entries) and all(entry.endswith(".mcap") for entry in entries)
 
 
-def mount_agreement(app: FastAPI, opened: Opened, *, menu: Sequence[str]) -> None:
-    """Add the page to the inspector where there are answers to compare."""
+def mount_agreement(
+    app: FastAPI, opened: Opened, *, menu: Sequence[str], beside: Sequence[Path] = ()
+) -> None:
+    """Add the page to the inspector where there are answers to compare; see `AgreementDesk`."""
     if has_agreement(opened):
-        app.include_router(agreement_routes(AgreementDesk(opened), menu))
+        app.include_router(agreement_routes(AgreementDesk(opened, beside), menu))
 
 
 # ---------------------------------------------------------------- what the page shows
@@ -200,7 +206,8 @@ def _shown(desk: AgreementDesk, asked: Asked) -> Shown:
     truth, privileged = _privileged(desk, answers, wanted=asked.best)
     return Shown(
         runs=tuple(run.name for run in desk.runs),
-        people=sum(rater.human for rater in raters),
+        people=len(answers.people),
+        beside_map=answers.beside_map,
         rankers=sum(not rater.human for rater in raters),
         questions=len({answer.question for answer in answers.given}),
         slots=((ALL, "All slots"), *((name, _slot(name)) for name in slots)),
@@ -276,6 +283,8 @@ def _rater_row(row: OrderEffects, truth: Iterable[BestElected]) -> RaterRow:
 def _what(rater: Rater) -> str:
     if rater.privileged:
         return "◆ knows the truth"
+    if rater.seen:
+        return "◇ person"
     return "person" if rater.human else ""
 
 

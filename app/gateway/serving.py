@@ -7,9 +7,10 @@ import os
 import socket
 import threading
 import webbrowser
-from collections.abc import AsyncGenerator, Callable
+from collections.abc import AsyncGenerator, Callable, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import uvicorn
 from fastapi import FastAPI
@@ -110,6 +111,7 @@ def serve(
     no_browser: bool = False,
     ready: Callable[[Address], None] | None = None,
     runs: RunPages | None = None,
+    beside: Sequence[Path] = (),
 ) -> None:
     """Show what was opened until interrupted.
 
@@ -120,6 +122,7 @@ def serve(
         no_browser: Do not open a browser.
         ready: Called once with the address, before the first request is served.
         runs: Pages about the runs of a folder, beside the inspector and opened first.
+        beside: Re-evaluations, whose rankers count on the agreement page too.
 
     Raises:
         C2NavError: When the source's first entry cannot be opened, or the port is taken.
@@ -133,7 +136,7 @@ def serve(
         menu = menu_of(opened, runs)
         app = application(session, shell, names=names_of(host), menu=menu)
         mount_judging(app, [entry.entry_id for entry in opened.entries])
-        mount_agreement(app, opened, menu=menu)
+        mount_agreement(app, opened, menu=menu, beside=beside)
         if runs is not None:
             mount_runs(app, replace(runs, menu=menu))
             runs.library.start()

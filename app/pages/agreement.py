@@ -148,7 +148,8 @@ class Shown:
 
     Attributes:
         runs: Names of the runs.
-        people: How many people answered.
+        people: How many people answered without having seen a model's answer.
+        beside_map: How many of their answers were given in the inspector.
         rankers: How many models.
         questions: How many questions were answered.
         slots: Slots to choose from: name and words, the first for all of them.
@@ -164,6 +165,7 @@ class Shown:
 
     runs: tuple[str, ...]
     people: int
+    beside_map: int
     rankers: int
     questions: int
     slots: tuple[tuple[str, str], ...]

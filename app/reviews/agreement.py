@@ -31,8 +31,9 @@ from c2nav_engine.experiments.statistics.orders import (
     repetition_stability,
 )
 
-KINDS = ("human-human", "human-model", "model-model", "privileged")
-"""Of pairs; a ranker that knows the truth makes its pairs privileged, whoever the other one is."""
+KINDS = ("human-human", "human-model", "model-model", "seen", "privileged")
+"""Of pairs; a person who had seen the model's answer, or a ranker that knows the truth, makes every
+pair of theirs one apart, whoever the other one is."""
 ALL = "all"
 """Stands for every slot together."""
 
@@ -51,7 +52,7 @@ class Agreement:
         chance: What two uniform choices would give there: mean 1/m over offered alternatives.
         tau: Mean Kendall's τ-b where both ranked.
         alpha: Krippendorff's nominal α over winners by role; None over several slots,
-            and for people and models all together.
+            and for raters of different kinds all together.
         confusion: (winner of a, winner of b) → how often.
     """
 
@@ -128,14 +129,16 @@ def pairs_of(answers: Answers) -> dict[tuple[Rater, Rater], list[Pair]]:
     }
 
 
-def standing(rater: Rater) -> tuple[bool, bool, str]:
-    """Raters in the order in which they stand: people, models, and who knows the truth."""
-    return (rater.privileged, not rater.human, rater.name)
+def standing(rater: Rater) -> tuple[bool, bool, bool, str]:
+    """Raters in the order in which they stand: people, models, whoever had seen or knows more."""
+    return (rater.privileged, rater.seen, not rater.human, rater.name)
 
 
 def kind_of(a: Rater, b: Rater) -> str:
     """Which of `KINDS` a pair is; a model never comes before a person."""
-    return KINDS[3 if a.privileged or b.privileged else 2 - a.human - b.human]
+    if a.privileged or b.privileged:
+        return "privileged"
+    return "seen" if a.seen or b.seen else KINDS[2 - a.human - b.human]
 
 
 def _rows(names: tuple[str, str, str], pairs: Sequence[Pair], seed: int) -> list[Agreement]:
@@ -151,8 +154,8 @@ def _rows(names: tuple[str, str, str], pairs: Sequence[Pair], seed: int) -> list
 def _row(names: tuple[str, str, str], slot: str, pairs: Sequence[Pair], seed: int) -> Agreement:
     elected = [pair for pair in pairs if None not in (pair.a.winner, pair.b.winner)]
     kind, a, b = names
-    # People and a model together are no raters of one kind: only a pair of them has its α.
-    alike = bool(a) or kind not in ("human-model", "privileged")
+    # Raters of different kinds together are no sample of one: only a pair of them has its α.
+    alike = bool(a) or kind in ("human-human", "model-model")
     return Agreement(
         kind=kind,
         a=a,

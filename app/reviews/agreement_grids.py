@@ -25,17 +25,21 @@ def human_study(runs: Sequence[Path], *, seed: int = 0) -> Annex | None:
     if not any((run / FILE).is_file() for run in runs):
         return None
     answers = read_answers(runs)
-    people = sorted({each.rater.name for each in answers.given if each.rater.human})
-    if not people:
+    if not answers.people:
         return None
     pairs = [row for row in agreements(answers, seed=seed) if row.kind in KINDS[:2]]
-    orders = [row for row in order_effects(answers, seed=seed) if row.rater.human]
-    note = (
-        f"{len(people)} people on {len({each.question for each in answers.given})} recorded "
-        "questions. They saw what the model was sent. Agreement is not accuracy: nobody here is "
-        "told the right answer."
-    )
-    return Annex("Human study", (note,), (agreement_grid(pairs), order_grid(orders)))
+    orders = [row for row in order_effects(answers, seed=seed) if row.rater.name in answers.people]
+    questions = {each.question for each in answers.given}
+    notes = [
+        f"{len(answers.people)} people on {len(questions)} recorded questions. They saw what the "
+        "model was sent. Agreement is not accuracy: nobody here is told the right answer."
+    ]
+    if answers.beside_map:
+        notes.append(
+            f"{answers.beside_map} of their rankings were made blind in the inspector, where the "
+            "map stands beside the question."
+        )
+    return Annex("Human study", tuple(notes), (agreement_grid(pairs), order_grid(orders)))
 
 
 def agreement_grid(rows: Sequence[Agreement]) -> Grid:

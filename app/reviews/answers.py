@@ -18,11 +18,13 @@ class Rater:
         name: Pseudonym, or the ranker's name.
         human: Whether it is a person.
         privileged: Whether it knows the truth: then it stands apart from all others.
+        seen: Whether it is a person who had seen the model's answer: they stand apart too.
     """
 
     name: str
     human: bool
     privileged: bool = False
+    seen: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +38,8 @@ class Answer:
         slot: Decision slot.
         keys: What was offered, sorted.
         tiers: Keys from best to worst; () when nothing was ranked.
+        beside_map: Whether a person gave it in the inspector, where more is in view than the
+            model was sent.
     """
 
     rater: Rater
@@ -44,6 +48,7 @@ class Answer:
     slot: str
     keys: tuple[Key, ...]
     tiers: tuple[tuple[Key, ...], ...]
+    beside_map: bool = False
 
     @property
     def winner(self) -> Key | None:
@@ -86,3 +91,14 @@ class Answers:
     given: tuple[Answer, ...]
     showings: tuple[Showing, ...]
     places: Mapping[str, tuple[Place, ...]] = field(default_factory=dict[str, tuple[Place, ...]])
+
+    @property
+    def people(self) -> tuple[str, ...]:
+        """Who ranked without having seen a model's answer, by name."""
+        raters = {answer.rater for answer in self.given}
+        return tuple(sorted(rater.name for rater in raters if rater.human and not rater.seen))
+
+    @property
+    def beside_map(self) -> int:
+        """Answers that people gave blind in the inspector."""
+        return sum(answer.beside_map and not answer.rater.seen for answer in self.given)

@@ -12,7 +12,7 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from app.reviews.events import Event, Kind
 from app.reviews.questions import prompt_at
@@ -67,6 +67,7 @@ class Desk:
         self._queues: dict[str, tuple[Place, ...]] = {}
         self._seen = 0
         self._events: list[Event] = []
+        self._told: dict[tuple[str, str], int] = {}
         self._prompts: OrderedDict[Place, Future[Prompt]] = OrderedDict()
         self._lock = threading.Lock()
         self._reader = ThreadPoolExecutor(1, thread_name_prefix="c2nav-judge")
@@ -104,6 +105,9 @@ class Desk:
         )
         with self._store.writing() as writing:
             answered = self._answered(writing, person.queue)
+            # Whoever walked through this trace in the inspector may know what the model said.
+            told = self._told.get((event.author, event.trace_sha256), 0)
+            event = replace(event, model_seen=event.decision < told)
             holder = answered.get(answer.number)
             if holder is not None and holder.id == event.id:
                 return
@@ -158,6 +162,9 @@ class Desk:
         """Place → its answer, as it stands now."""
         for seq, event in writing.events(after=self._seen):
             self._seen = seq
+            if event.model_seen:
+                place = (event.author, event.trace_sha256)
+                self._told[place] = max(self._told.get(place, 0), event.decision + 1)
             if event.extra.get("study") == self.study.name:
                 self._events.append(event)
         return {

@@ -1,9 +1,13 @@
-"""Reads answers: people from reviews, models from traces and re-evaluations."""
+"""Reads answers: people from reviews, models from traces and re-evaluations.
+
+What a person ranks in the inspector names a trace and a decision only; what was asked there is
+read from the trace. Whoever ranked after seeing the model's answer becomes a rater apart.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +25,36 @@ from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.runner.exchange import Exchange
 from c2nav_engine.runner.recorded import OpenTrace, open_trace
 
-Names = dict[tuple[str, int], str]
-"""Trace digest and decision → the name of the question."""
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What was asked at one decision, as an answer names it.
+
+    Attributes:
+        question: Names what was asked, whatever the order shown.
+        episode: Scene and episode.
+        slot: Decision slot.
+        keys: What was offered, sorted.
+    """
+
+    question: str
+    episode: str
+    slot: str
+    keys: tuple[Key, ...]
+
+    def answer(self, rater: Rater, tiers: tuple[tuple[Key, ...], ...]) -> Answer:
+        """Somebody's answer to it."""
+        return Answer(rater, self.question, self.episode, self.slot, self.keys, tiers)
+
+    def showing(self, rater: Rater, shown: tuple[Key, ...], winner: Key | None) -> Showing:
+        """It was shown in this order, and that was elected."""
+        return Showing(rater, self.slot, Shown(self.episode, self.question, shown, winner))
+
+
+_FILES = (".jsonl", ".parquet")
+
+Questions = dict[tuple[str, int], Asked]
+"""Trace digest and decision → what was asked there, as far as traces or studies told."""
 
 
 def read_answers(what: Sequence[Path]) -> Answers:
@@ -31,11 +63,11 @@ def read_answers(what: Sequence[Path]) -> Answers:
     Raises:
         UsageError: Something is neither, or holds no answer.
     """
-    names: Names = {}
-    # Re-evaluations come last: what they ask about is named by the runs and reviews.
+    known: Questions = {}
+    # Reviews speak of what runs asked, re-evaluations of either.
     found = [
-        _of_run(path, names) if path.is_dir() else _of_file(path, names)
-        for path in sorted(what, key=lambda path: path.suffix == ".parquet")
+        _of_run(path, known) if path.is_dir() else _of_file(path, known)
+        for path in sorted(what, key=lambda path: (not path.is_dir(), path.suffix != _FILES[0]))
     ]
     together = merged(found)
     if not together.given:
@@ -65,74 +97,76 @@ def _first_given(given: Iterable[Answer]) -> tuple[Answer, ...]:
     return tuple(first.values())
 
 
-def _of_run(run: Path, names: Names) -> Answers:
-    traces = sorted((run / "traces").glob("*.mcap"))
-    return merged([*(of_trace(path, names) for path in traces), of_people(run, names)])
+def _of_run(run: Path, known: Questions) -> Answers:
+    traces = sorted((run / "traces").glob("*.mcap")) or sorted(run.glob("*.mcap"))
+    return merged([*(of_trace(path, known) for path in traces), of_people(run, known)])
 
 
-def of_trace(path: Path, names: Names) -> Answers:
-    """What a model answered in a finished trace; adds to `names`."""
+def of_trace(path: Path, known: Questions) -> Answers:
+    """What a model answered in a finished trace; adds to `known`."""
     given: list[Answer] = []
     showings: list[Showing] = []
     places: dict[str, tuple[Place, ...]] = {}
     with open_trace(path) as trace:
         for exchange in trace.decisions():
-            if _asked(exchange):
-                answer, shown = _of_model(exchange, trace)
+            if _was_asked(exchange):
+                asked, answer, shown = _of_model(exchange, trace)
                 given.append(answer)
                 showings += shown
                 number = exchange.decision or 0
-                names[trace.sha256, number] = answer.question
-                here = (*places.get(answer.question, ()), Place(path, number))
-                places[answer.question] = here
+                known[trace.sha256, number] = asked
+                places[asked.question] = (*places.get(asked.question, ()), Place(path, number))
     return Answers(tuple(given), tuple(showings), places)
 
 
-def of_people(run: Path, names: Names) -> Answers:
-    """What people said about a run, under their pseudonyms; adds to `names`."""
+def of_people(run: Path, known: Questions) -> Answers:
+    """What people said about a run, under their pseudonyms; adds to `known`."""
     if not (run / FILE).is_file():
         return Answers((), ())
     with store_of(run) as store:
-        return of_events(shared_events(store), names)
+        return of_events(shared_events(store), known)
 
 
-def _of_file(path: Path, names: Names) -> Answers:
-    if path.suffix not in (".jsonl", ".parquet") or not path.is_file():
+def _of_file(path: Path, known: Questions) -> Answers:
+    if path.suffix not in _FILES or not path.is_file():
         message = (
             "expected a run folder, a file of reviews (.jsonl) or a re-evaluation (.parquet), "
             f"came {path}"
         )
         raise UsageError(message)
     if path.suffix == ".parquet":
-        from c2nav_engine.experiments.reeval_table import read_table
-
-        return _of_reevaluation(read_table(path), names)
-    return of_events(read_lines(path.read_text("utf-8").splitlines(), where=str(path)), names)
+        return of_reevaluation(path, known)
+    return of_events(read_lines(path.read_text("utf-8").splitlines(), where=str(path)), known)
 
 
-def _of_reevaluation(rows: Sequence[Mapping[str, Any]], names: Names) -> Answers:
+def of_reevaluation(path: Path, known: Questions) -> Answers:
     """Both rankers of every row; the same ranker asked again is called so."""
+    from c2nav_engine.experiments.reeval_table import read_table
+
     given: list[Answer] = []
     showings: list[Showing] = []
-    for row in sorted(rows, key=lambda row: int(row["order"])):
+    for row in sorted(read_table(path), key=lambda row: int(row["order"])):
         if row["form"] not in ORDINAL_FORMS:
             continue
-        place = (row["trace_sha256"], row["decision"])
-        question = names.get(place, f"{place[0]}/{place[1]}")
-        episode = f"{row['scene_id']}/{row['episode_id']}"
+        asked, shown = _asked_again(row, known), tuple(row["keys"])
         recorded, ranker = row["recorded_ranker"], row["ranker"]
         rater = _recorded_rater(ranker)
         if ranker == recorded:
             rater = replace(rater, name=f"{ranker}, again")
-        shown = tuple(row["keys"])
-        facts = (question, episode, row["slot"], tuple(sorted(shown)))
-        tiers = tuple(tuple(tier) for tier in row["ranking"] or ())
         # Only the recorded winner is known here: the rest of that ranking stands in its trace.
         winner = ((row["recorded_winner"],),) if row["recorded_winner"] else ()
-        answer = Answer(rater, *facts, tiers)
-        given += [answer, Answer(_recorded_rater(recorded), *facts, winner)]
-        showings.append(Showing(rater, row["slot"], Shown(episode, question, shown, answer.winner)))
+        answer = asked.answer(rater, tuple(tuple(tier) for tier in row["ranking"] or ()))
+        given += [answer, asked.answer(_recorded_rater(recorded), winner)]
+        showings.append(asked.showing(rater, shown, answer.winner))
     return Answers(tuple(given), tuple(showings))
+
+
+def _asked_again(row: Mapping[str, Any], known: Questions) -> Asked:
+    """What a row asked; its own words where no trace of it was read."""
+    place = (row["trace_sha256"], row["decision"])
+    episode = f"{row['scene_id']}/{row['episode_id']}"
+    own = Asked(f"{place[0]}/{place[1]}", episode, row["slot"], tuple(sorted(row["keys"])))
+    return known.get(place, own)
 
 
 def _recorded_rater(ranker: str) -> Rater:
@@ -144,39 +178,46 @@ def _recorded_rater(ranker: str) -> Rater:
     )
 
 
-def of_events(events: Iterable[Event], names: Names) -> Answers:
-    """What people said blind in studies; answers of the second showing count for order alone."""
+def of_events(events: Iterable[Event], known: Questions) -> Answers:
+    """People's own rankings, of studies first; adds to `known`.
+
+    A study's second showing of an item counts for order alone. Rankings in the inspector count for
+    agreement alone, because views stand there where they lie and in no order, and only where the
+    question is known.
+    """
+    said = [event for event in standing(events) if event.kind is Kind.RANKING]
     given: list[Answer] = []
     showings: list[Showing] = []
-    for event in standing(events):
-        extra = event.extra
-        if event.kind is not Kind.RANKING or not event.blind or "question" not in extra:
-            continue
-        rater = Rater(event.author, human=True)
-        names[event.trace_sha256, event.decision] = extra["question"]
-        shown = tuple(extra["shown"].split())
-        tiers = _tiers(event.said)
-        answer = Answer(
-            rater,
-            extra["question"],
-            extra["episode"],
-            extra["slot"],
-            tuple(sorted(shown)),
-            tiers,
-        )
-        if extra.get("again") != "yes":
-            given.append(answer)
-        showings.append(
-            Showing(
-                rater,
-                extra["slot"],
-                Shown(extra["episode"], extra["question"], shown, answer.winner),
-            )
-        )
+    for event in said:
+        if "question" in event.extra:
+            asked = _asked_in_study(event)
+            known[event.trace_sha256, event.decision] = asked
+            answer = asked.answer(_person(event), _tiers(event.said))
+            if event.extra.get("again") != "yes":
+                given.append(answer)
+            shown = tuple(event.extra["shown"].split())
+            showings.append(asked.showing(answer.rater, shown, answer.winner))
+    for event in said:
+        asked = known.get((event.trace_sha256, event.decision))
+        if "question" not in event.extra and asked is not None:
+            answer = asked.answer(_person(event), _tiers(event.said))
+            given.append(replace(answer, beside_map=True))
     return Answers(tuple(given), tuple(showings))
 
 
-def _asked(exchange: Exchange) -> bool:
+def _person(event: Event) -> Rater:
+    if event.blind and not event.model_seen:
+        return Rater(event.author, human=True)
+    return Rater(f"{event.author}, answer seen", human=True, seen=True)
+
+
+def _asked_in_study(event: Event) -> Asked:
+    extra = event.extra
+    keys = tuple(sorted(extra["shown"].split()))
+    return Asked(extra["question"], extra["episode"], extra["slot"], keys)
+
+
+def _was_asked(exchange: Exchange) -> bool:
     return (
         isinstance(exchange.request, Ask)
         and exchange.request.question.form in ORDINAL_FORMS
@@ -184,37 +225,25 @@ def _asked(exchange: Exchange) -> bool:
     )
 
 
-def _of_model(exchange: Exchange, trace: OpenTrace) -> tuple[Answer, list[Showing]]:
+def _of_model(exchange: Exchange, trace: OpenTrace) -> tuple[Asked, Answer, list[Showing]]:
     assert isinstance(exchange.request, Ask)
     assert exchange.ranked is not None
     question, ranked = exchange.request.question, exchange.ranked
     episode = f"{trace.header.episode.scene_id}/{trace.header.episode.episode_id}"
+    keys = tuple(sorted(question.keys))
+    asked = Asked(question_id(question), episode, question.slot.value, keys)
     rater = _recorded_rater(ranked.ranker)
-    name = question_id(question)
-    answer = Answer(
-        rater,
-        name,
-        episode,
-        question.slot.value,
-        tuple(sorted(question.keys)),
-        _tiers(ranked.outcome),
-    )
     # A repair asks the same presentation again: what counts is where it ended.
     last = {query.prompt.order: query for query in ranked.queries}
     showings = [
-        Showing(
+        asked.showing(
             rater,
-            question.slot.value,
-            Shown(
-                episode,
-                name,
-                tuple(key for _, key in query.prompt.labels),
-                query.outcome.winner if isinstance(query.outcome, Ordering) else None,
-            ),
+            tuple(key for _, key in query.prompt.labels),
+            query.outcome.winner if isinstance(query.outcome, Ordering) else None,
         )
         for query in last.values()
     ]
-    return answer, showings
+    return asked, asked.answer(rater, _tiers(ranked.outcome)), showings
 
 
 def _tiers(outcome: Answered | None) -> tuple[tuple[Key, ...], ...]:
