@@ -70,7 +70,7 @@ def solve_field(spans: Spans, target_span: int, target: Cells) -> FieldArrays:
             if other == NONE or parent[other] == parent[span]:
                 continue
             length_m, by = _reach(spans, field, (span, other), unseen)
-            if length_m < distance_m[other] - _GAIN_M:
+            if length_m < distance_m[other] - _GAIN_M and not _hangs_on(field, by, other):
                 distance_m[other], parent[other] = length_m, by
                 field.turn_m[other] = np.inf
                 heapq.heappush(heap, (length_m, other))
@@ -103,6 +103,20 @@ def _reach(
     if field.turn_m[span] == np.inf:
         _choose_turn(spans, field, span, other)
     return _via(spans, field, span, other), span
+
+
+@compiled
+def _hangs_on(field: FieldArrays, span: int, other: int) -> bool:
+    """Whether the way from a span leads through another.
+
+    Lengths follow the floor, so that on rough ground a way over two sides of a triangle can be
+    shorter than the third; without this a span could come to hang on itself.
+    """
+    while span >= 0:
+        if span == other:
+            return True
+        span = field.parent[span]
+    return False
 
 
 @compiled

@@ -130,3 +130,32 @@ def test_a_surface_is_built_the_same_every_time(surface):
     again = surface_of(BOXES)
     for name, value in surface.spans._asdict().items():
         assert np.array_equal(value, getattr(again.spans, name)), name
+
+
+def rough(seed: int) -> WalkableSurface:
+    """Paving stones at random heights that can all be stepped over; some are missing."""
+    rng = np.random.default_rng(seed)
+    side_m, count = 0.2, 15
+    heights_m = rng.uniform(0.0, 0.19, (count, count))
+    return surface_of(
+        [
+            Box((i * side_m, -0.1, j * side_m), ((i + 1) * side_m, height_m, (j + 1) * side_m))
+            for (i, j), height_m in np.ndenumerate(heights_m)
+            if rng.random() > 0.08
+        ]
+    )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_on_rough_ground_every_way_ends_at_its_target(seed):
+    """Lengths over uneven floor break the triangle inequality: nothing may hang on itself."""
+    surface = rough(seed)
+    low, high = surface.triangles().min(axis=(0, 1)), surface.triangles().max(axis=(0, 1))
+    for x, y, z in np.random.default_rng(seed).uniform(low, high, (8, 3)).tolist():
+        target = surface.snap((x, y, z))
+        assert target is not None
+        parent = np.asarray(surface.distance_field(target).field.parent)
+        span = np.arange(len(parent))
+        for _ in parent:
+            span = np.where(parent[span] >= 0, parent[span], span)
+        assert (parent[span] < 0).all()
