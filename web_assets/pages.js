@@ -72,13 +72,22 @@ function showPicked() {
     box.checked = picked.has(item.dataset.sha) && item.dataset.sha !== "";
     item.classList.toggle("p-on", box.checked);
   }
+  const all = document.querySelector("[data-all]");
+  if (!all) return;
+  const boxes = [...document.querySelectorAll(".p-case input[type=checkbox]:enabled")];
+  const on = boxes.filter((box) => box.checked).length;
+  all.checked = on > 0 && on === boxes.length;
+  all.indeterminate = on > 0 && on < boxes.length;
 }
 
 document.addEventListener("change", (event) => {
+  if (event.target.type !== "checkbox") return;
   const item = event.target.closest(".p-case");
-  if (!item || event.target.type !== "checkbox") return;
-  if (event.target.checked) picked.add(item.dataset.sha);
-  else picked.delete(item.dataset.sha);
+  const meant = item ? [item] : document.querySelectorAll(".p-case:has(input[type=checkbox]:enabled)");
+  for (const { dataset } of meant) {
+    if (event.target.checked) picked.add(dataset.sha);
+    else picked.delete(dataset.sha);
+  }
   showPicked();
 });
 
@@ -132,11 +141,15 @@ const actions = {
   },
   "[data-drop-view]": (button) => changed("cases/views/drop", { name: button.dataset.dropView }),
   "[data-export]": async (button) => {
+    // It stays on the page: this takes a while, and what was written has to be found.
+    const how = document.querySelector("[data-exported]");
+    how.textContent = "exporting; figures take a few seconds a case…";
+    how.hidden = false;
     button.disabled = true;
-    say("exporting; figures take a few seconds a case…");
     const told = await post("cases/export", { name: inSet });
     button.disabled = false;
-    if (told !== null) say(`exported to ${told.folder}`);
+    if (told === null) how.hidden = true;
+    else how.textContent = `exported to ${told.folder}`;
   },
 };
 

@@ -12,7 +12,7 @@ from fastapi import APIRouter, FastAPI, HTTPException, Path, Query
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.exports.case_sets.packing import pack_set
+from app.exports.case_sets.packing import fresh_folder, pack_set
 from app.figures.plan import Plan
 from app.gateway.alone import listen, names_of, serve_alone
 from app.gateway.assets import assets, serve_assets
@@ -195,11 +195,10 @@ def _changing(router: APIRouter, pages: RunPages) -> None:
 
     @router.post("/cases/export")
     def export(said: Named) -> dict[str, str]:
+        folder = fresh_folder(library.root / EXPORTS / said.name)
         try:
-            folder = library.root / EXPORTS / said.name
-            return {
-                "folder": str(pack_set(library, said.name, folder, plan_of=pages.plan_of).folder)
-            }
+            packed = pack_set(library, said.name, folder, plan_of=pages.plan_of)
+            return {"folder": str(packed.folder)}
         except C2NavError as error:
             raise HTTPException(422, str(error)) from error
 

@@ -5,15 +5,19 @@ from __future__ import annotations
 import csv
 import json
 import re
+import shutil
 import sqlite3
+import subprocess
 from collections.abc import Iterator
 from html import unescape
 from pathlib import Path
 
 import pytest
+from PIL import Image
 from starlette.testclient import TestClient
 
-from app.exports.case_sets.latex import escaped
+from app.exports.case_sets.latex import Plate, appendix, escaped
+from app.exports.case_sets.packing import fresh_folder
 from app.exports.case_sets.unpacking import unpack_set
 from app.gateway.runs import RunPages, runs_application
 from app.pages.index import curation
@@ -204,11 +208,12 @@ def test_a_set_is_gathered_exported_and_opens_elsewhere(visit: Visit, tmp_path: 
     post("/cases/note", name="failures", note="What went wrong.")
     post("/cases/views", name="doors", query='tag:"glass door"', sort="-ne_m")
     page = words(client.get("/cases", params={"q": "set:failures"}).text)
-    assert "in failures" in page
+    assert "failures 2" in page
+    assert "in failures" in words(client.get("/cases").text)
     assert "doors" in page
     told = client.post("/cases/export", json={"name": "failures"}).json()
     folder = Path(told["folder"])
-    assert client.post("/cases/export", json={"name": "failures"}).status_code == 422
+    assert fresh_folder(folder) == folder.with_name("failures-2")
     appendix = (folder / "appendix.tex").read_text(encoding="utf-8")
     assert appendix.count(r"\includegraphics") == appendix.count(r"\caption{") == 2
     assert r"50 \% \& a \#1\_miss." in appendix
@@ -252,4 +257,18 @@ def test_latex_names_every_special_sign_and_keeps_accents():
     assert escaped("a_b & 5 % of {x}^2 ~ \\") == (
         r"a\_b \& 5 \% of \{x\}\textasciicircum{}2 \textasciitilde{} \textbackslash{}"
     )
-    assert escaped("Möbel ✕ 中 “so” …") == r"Möbel   ``so'' \ldots{}"
+    assert escaped("Möbel ✕ “so” …") == r"Möbel $\times$ ``so'' \ldots{}"
+    assert escaped("λ ≥ 3, Δ ệ 中") == r"$\lambda$ $\geq$ 3, $\Delta$ e [U+4E2D]"
+
+
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex on PATH")
+def test_an_appendix_compiles_whatever_its_captions_say(tmp_path: Path):
+    Image.new("RGB", (40, 30)).save(tmp_path / "figure.pdf")
+    everything = "".join(map(chr, [*range(32, 1024), *range(0x2000, 0x2300)]))
+    plates = [Plate("figure.pdf", f"{number} {everything}", f"c{number}") for number in range(20)]
+    text = appendix("50 % of {them}", "a_b & “c” …", plates)
+    (tmp_path / "appendix.tex").write_text(text, encoding="utf-8")
+    command = ["pdflatex", "-halt-on-error", "-interaction=nonstopmode", "appendix.tex"]
+    said = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert said.returncode == 0, said.stdout[-2000:]
+    assert (tmp_path / "appendix.pdf").read_bytes()[:5] == b"%PDF-"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,6 +12,7 @@ import pytest
 import uvicorn
 from playwright.sync_api import Browser, Page
 
+from app.exports.case_sets.unpacking import unpack_set
 from app.gateway.runs import RunPages, runs_application
 from app.pages.index import curation
 from app.pages.library import Library
@@ -61,6 +64,10 @@ def test_a_set_is_gathered_captioned_and_compared(page: Page, tmp_path: Path):
         page.goto(f"{url}cases")
         choose(page, 0, 2)
         answer(page, "Tag…", "glass door")
+        page.get_by_role("button", name="Clear").click()
+        page.get_by_role("button", name="glass door", exact=True).click()
+        page.locator("[data-all]").check()
+        assert page.locator("[data-picked]").inner_text() == "2 chosen"
         answer(page, "Add to set…", "failures")
         page.get_by_role("link", name="failures", exact=True).click()
         assert page.locator(".p-case").count() == 2
@@ -68,8 +75,9 @@ def test_a_set_is_gathered_captioned_and_compared(page: Page, tmp_path: Path):
         with page.expect_response("**/cases/caption"):
             page.keyboard.press("Tab")
         with page.expect_response("**/cases/export", timeout=PATIENCE_MS) as exported:
-            page.get_by_role("button", name="Export…").click()
-        assert Path(exported.value.json()["folder"], "appendix.tex").is_file()
+            page.get_by_role("button", name="Export").click()
+        folder = Path(exported.value.json()["folder"])
+        page.get_by_text(f"exported to {folder}").wait_for()
         page.get_by_role("button", name="Compare the two").click()
         page.wait_for_selector(".p-parted h1")
         before = page.locator("output").inner_text()
@@ -82,6 +90,40 @@ def test_a_set_is_gathered_captioned_and_compared(page: Page, tmp_path: Path):
         members = curation.members(library.store, "failures")
         assert [caption for _, _, caption in members] == ["Walks into glass.", ""]
         assert all(case is not None and case.marks == ("glass door",) for case, _, _ in members)
+    _opens_offline(page, folder)
+    _opens_elsewhere(page, folder, tmp_path / "elsewhere")
+
+
+def _opens_offline(page: Page, folder: Path) -> None:
+    """The page of an exported set asks nothing of any network, and its files are as they were."""
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto((folder / "index.html").as_uri())
+    page.wait_for_load_state("networkidle")
+    widths = page.evaluate("[...document.images].map((image) => image.naturalWidth)")
+    assert len(widths) == 2
+    assert min(widths) > 0
+    assert "Walks into glass." in page.inner_text("figure")
+    assert all(address.startswith(folder.as_uri()) for address in asked)
+    held = json.loads((folder / "manifest.json").read_text("utf-8"))["files"]
+    files = {path for path in folder.rglob("*") if path.is_file()} - {folder / "manifest.json"}
+    assert held == {
+        path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in files
+    }
+
+
+def _opens_elsewhere(page: Page, folder: Path, there: Path) -> None:
+    """Another folder of runs takes the set in, with its tag and its caption."""
+    unpack_set(folder, there)
+    library = Library(there)
+    library.refresh()
+    with served(library) as url:
+        page.goto(f"{url}cases")
+        page.get_by_role("link", name="failures", exact=True).click()
+        assert page.locator(".p-case").count() == 2
+        assert page.locator(".p-mark").all_inner_texts() == ["glass door"] * 2
+        assert page.locator("[data-caption]").first.input_value() == "Walks into glass."
 
 
 @pytest.mark.parametrize("size", [(1280, 720), (1920, 1080)])

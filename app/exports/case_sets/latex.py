@@ -6,6 +6,19 @@ import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+_GREEK = (
+    *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa"),
+    *("lambda", "mu", "nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi"),
+    *("omega", "Gamma", "Delta", "Theta", "Lambda", "Xi", "Pi", "Sigma", "Phi", "Psi", "Omega"),
+)
+
+
+def _greek(name: str) -> str:
+    """The letter of that name; Unicode writes lambda without its b."""
+    size = "CAPITAL" if name[0].isupper() else "SMALL"
+    return unicodedata.lookup(f"GREEK {size} LETTER {name.upper().replace('LAMBDA', 'LAMDA')}")
+
+
 _SPECIAL: Mapping[str, str] = {
     "\\": r"\textbackslash{}",
     "{": r"\{",
@@ -32,17 +45,28 @@ _SPECIAL: Mapping[str, str] = {
     "²": r"\textsuperscript{2}",
     "±": r"$\pm$",
     "×": r"$\times$",
+    "✕": r"$\times$",
+    "÷": r"$\div$",
+    "−": "$-$",
+    "≠": r"$\neq$",
+    "≈": r"$\approx$",
+    "°": r"\textdegree{}",
+    "µ": r"$\mu$",
     "≥": r"$\geq$",
     "≤": r"$\leq$",
     "→": r"$\rightarrow$",
     "∞": r"$\infty$",
     "\n": " ",
-}
+} | {_greek(name): rf"$\{name}$" for name in _GREEK}
+
+_NOT_IN_T1 = "ĦħĸĿŀŉŦŧ"
+"""Between À and ž; all others there the T1 fonts have."""
 
 _HEAD = r"""% One figure a case. It compiles as it is (pdflatex appendix.tex); for a paper, copy
 % what stands between \begin{document} and \end{document}. Only graphicx is needed.
 \documentclass{article}
 \usepackage[T1]{fontenc}
+\IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
 \usepackage{graphicx}
 \begin{document}
 """
@@ -84,12 +108,17 @@ def appendix(title: str, note: str, plates: Sequence[Plate]) -> str:
 
 
 def escaped(text: str) -> str:
-    """Plain words as LaTeX: special signs by name, accents kept, other signs left out."""
-    return "".join(_SPECIAL.get(sign) or _known(sign) for sign in text)
+    """Plain words as LaTeX: special signs by name, accents kept, strange signs by their number."""
+    return "".join(
+        _SPECIAL.get(sign) or _known(sign) for sign in unicodedata.normalize("NFC", text)
+    )
 
 
 def _known(sign: str) -> str:
-    """Letters of Western languages pass; what the T1 fonts lack would stop the compiler."""
-    if sign.isascii():
+    """What the T1 fonts have passes; what they lack would stop the compiler."""
+    if sign.isascii() or sign.isspace():
         return sign if sign.isprintable() else " "
-    return sign if sign.isalpha() and unicodedata.name(sign, "").startswith("LATIN") else ""
+    if "À" <= sign <= "ž" and sign not in _NOT_IN_T1:
+        return sign
+    plain = unicodedata.normalize("NFKD", sign)[0]
+    return plain if plain.isascii() and plain.isalpha() else f"[U+{ord(sign):04X}]"

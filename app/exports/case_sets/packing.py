@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import re
 import shutil
 from collections.abc import Callable, Sequence
@@ -101,6 +102,12 @@ def pack_set(library: Library, name: str, folder: Path, *, plan_of: PlanOf) -> P
     _write_words(library, name, entries, part)
     part.rename(folder)
     return Packed(folder, len(entries), tuple(sha for case, sha, _ in members if case is None))
+
+
+def fresh_folder(wanted: Path) -> Path:
+    """That folder, or the same with the first number whose folder is not there yet."""
+    numbered = (wanted.with_name(f"{wanted.name}-{number}") for number in itertools.count(2))
+    return next(folder for folder in itertools.chain([wanted], numbered) if not folder.exists())
 
 
 def _packed(trace: Path, entry: Entry, folder: Path, plan_of: PlanOf) -> Entry:

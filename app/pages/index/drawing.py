@@ -78,7 +78,9 @@ def map_of(drawing: str, *, width: float, height: float, within: Sequence[Spot] 
         return None
     facts = json.loads(drawing)
     way, reference, goal = facts["way"], facts["reference"], facts["goal"]
-    everything = [*way, *reference, *([goal] if goal else []), *within]
+    radius_m = facts["radius_m"]
+    disc = [[side + sign * radius_m for side in goal] for sign in (-1, 1)] if goal else []
+    everything = [*way, *reference, *disc, *within]
     low = [min(spot[axis] for spot in everything) for axis in (0, 1)]
     extent = [max(spot[axis] for spot in everything) - low[axis] for axis in (0, 1)]
     scale = min(
@@ -102,6 +104,6 @@ def map_of(drawing: str, *, width: float, height: float, within: Sequence[Spot] 
         start=at(way[0]),
         end=at(way[-1]),
         goal=at(goal) if goal else None,
-        radius=round(scale * facts["radius_m"], 1),
+        radius=round(scale * radius_m, 1),
         at=at,
     )
