@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 from textwrap import fill
 
 from rich.console import Console
@@ -13,7 +14,13 @@ from c2nav_engine.episodes.episode import Episode
 from c2nav_engine.episodes.profile import Profile
 from c2nav_engine.runner.source import BUILTIN, Source
 from c2nav_engine.runner.worlds import Worlds, WorldsConfig
+from c2nav_engine.world.connectivity import (
+    ConnectivityGraph,
+    connectivity_file,
+    connectivity_of,
+)
 from c2nav_engine.world.episode_check import Checked, check_episodes
+from c2nav_engine.world.graph_check import check_on_graph
 from c2nav_engine.world.surface import Surface
 
 MOST_IDS = 24
@@ -29,7 +36,8 @@ class CheckedSource:
         chosen: The episodes that were checked.
         profile: The body.
         missing: Scene ids that do not resolve, with the episodes that they block.
-        rows: The other episodes, in file order.
+        rows: The other episodes, in file order, and blocked ones that do not fit their graph.
+        on_graph: How many episodes were held against the connectivity graph of their scan.
         surfaces: Which kind of floor measured, by scene id.
         notes: What a user should know though nothing is wrong.
     """
@@ -39,6 +47,7 @@ class CheckedSource:
     profile: Profile
     missing: Mapping[str, tuple[str, ...]]
     rows: tuple[Checked, ...]
+    on_graph: int
     surfaces: Mapping[str, str]
     notes: tuple[str, ...]
 
@@ -49,9 +58,17 @@ class CheckedSource:
 
 
 def check_source(
-    source: Source, chosen: tuple[Episode, ...], profile: Profile, *, quiet: bool
+    source: Source,
+    chosen: tuple[Episode, ...],
+    profile: Profile,
+    *,
+    connectivity: Path | None = None,
+    quiet: bool,
 ) -> CheckedSource:
-    """Check every episode whose scene is there, scene by scene so that each is opened once."""
+    """Check every episode whose scene is there, scene by scene so that each is opened once.
+
+    With a folder of connectivity graphs, episodes are held against these too, scenes or none.
+    """
     missing = source.missing_scenes(chosen)
     there = [item for item in chosen if item.scene_id not in missing]
     worlds = Worlds(source, WorldsConfig(profile))
@@ -74,6 +91,11 @@ def check_source(
 
         by_scene = sorted(there, key=lambda item: item.scene_id)
         rows = check_episodes(by_scene, opened, surface_of)
+    graphs = {} if connectivity is None else _graphs(connectivity, chosen)
+    rows = [*_with_graphs(chosen, {row.episode_id: row for row in rows}, graphs)]
+    lacking = len({item.scene_id for item in chosen}) - len(graphs)
+    if connectivity is not None and lacking:
+        notes[f"{connectivity} lacks the connectivity graphs of {lacking} scenes"] = None
     place = {item.episode_id: number for number, item in enumerate(chosen)}
     return CheckedSource(
         source=source,
@@ -81,9 +103,36 @@ def check_source(
         profile=profile,
         missing=missing,
         rows=tuple(sorted(rows, key=lambda row: place[row.episode_id])),
+        on_graph=sum(item.scene_id in graphs for item in chosen),
         surfaces=surfaces,
         notes=tuple(notes),
     )
+
+
+def _graphs(folder: Path, chosen: Sequence[Episode]) -> dict[str, ConnectivityGraph]:
+    """By scene id, as far as the folder has them; raises `SceneError` for a broken file."""
+    return {
+        scene_id: connectivity_of(folder, scene_id)
+        for scene_id in {item.scene_id for item in chosen}
+        if connectivity_file(folder, scene_id).is_file()
+    }
+
+
+def _with_graphs(
+    chosen: Sequence[Episode],
+    rows: Mapping[str, Checked],
+    graphs: Mapping[str, ConnectivityGraph],
+) -> Iterator[Checked]:
+    """The rows with what the graphs say; a blocked episode has one where it does not fit."""
+    for item in chosen:
+        row = rows.get(item.episode_id)
+        graph = graphs.get(item.scene_id)
+        surface_m = None if row is None else row.geodesic_m
+        told = () if graph is None else tuple(check_on_graph(item, graph, surface_m))
+        if row is not None:
+            yield replace(row, findings=(*row.findings, *told))
+        elif told:
+            yield Checked(item.episode_id, item.scene_id, told, None)
 
 
 def checked_json(found: CheckedSource) -> dict[str, object]:
@@ -94,6 +143,7 @@ def checked_json(found: CheckedSource) -> dict[str, object]:
         "profile": found.profile.name,
         "episodes": len(found.chosen),
         "ok": found.ok,
+        "on_graph": found.on_graph,
         "missing_scenes": {scene_id: list(ids) for scene_id, ids in found.missing.items()},
         "surfaces": dict(found.surfaces),
         "notes": list(found.notes),
@@ -123,7 +173,9 @@ def print_checked(found: CheckedSource, console: Console) -> None:
         f"{list(found.surfaces.values()).count(kind)} {kind}"
         for kind in sorted(set(found.surfaces.values()))
     )
-    if found.rows:
+    if found.on_graph:
+        _line(console, f"{found.on_graph} episodes held against their connectivity graphs")
+    if found.surfaces:
         _line(console, f"{held} of {len(found.chosen)} episodes hold (floors: {floors})")
 
 

@@ -11,7 +11,17 @@ from rich.console import Console
 from rich.table import Table
 
 from app.commands.checking import check_source, checked_json, print_checked
-from app.commands.options import EpisodesOpt, JsonOpt, ScenesOpt, SourceArg, ids
+from app.commands.options import (
+    ConnectivityOpt,
+    EpisodesOpt,
+    GroundTruthOpt,
+    HeadingsOpt,
+    JsonOpt,
+    ScenesOpt,
+    SourceArg,
+    connectivity_folder,
+    ids,
+)
 from app.commands.output import print_json
 from app.commands.scenes import opened_scene
 from c2nav_engine.contract.route import parse_english
@@ -22,14 +32,6 @@ from c2nav_engine.errors import UsageError
 from c2nav_engine.runner.source import open_source
 
 ProfileOpt = Annotated[str, tyro.conf.arg(metavar="NAME", help="Embodiment profile.")]
-HeadingsOpt = Annotated[
-    Path | None,
-    tyro.conf.arg(metavar="FILE", help="Take start rotations from this file of the same episodes."),
-]
-GroundTruthOpt = Annotated[
-    Path | None,
-    tyro.conf.arg(metavar="FILE", help="Reference positions; the `_gt` file beside by default."),
-]
 
 
 def list_episodes(
@@ -80,11 +82,18 @@ def check(
     profile: ProfileOpt = "vlnce",
     headings: HeadingsOpt = None,
     ground_truth: GroundTruthOpt = None,
+    connectivity: ConnectivityOpt = None,
     json: JsonOpt = False,
 ) -> int:
     """Check schema, scenes, starts, goals and distances; exit code 1 where anything is amiss."""
     opened = open_source(source, scenes=scenes, headings=headings, ground_truth=ground_truth)
-    found = check_source(opened, opened.chosen(ids(episodes)), profile_named(profile), quiet=json)
+    found = check_source(
+        opened,
+        opened.chosen(ids(episodes)),
+        profile_named(profile),
+        connectivity=connectivity_folder(connectivity, scenes),
+        quiet=json,
+    )
     if json:
         print_json(checked_json(found))
     else:

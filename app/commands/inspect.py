@@ -9,7 +9,15 @@ from typing import Annotated
 import tyro
 from rich.console import Console
 
-from app.commands.options import RankerOptions, ScenesOpt, key_values
+from app.commands.options import (
+    ConnectivityOpt,
+    GroundTruthOpt,
+    HeadingsOpt,
+    RankerOptions,
+    ScenesOpt,
+    connectivity_folder,
+    key_values,
+)
 from app.commands.run_folders import folder_of_runs, pages_of, traces_under, with_later_traces
 from app.commands.sources import opened_source, opened_traces, trace_files
 from app.gateway.runs import serve_runs
@@ -41,6 +49,9 @@ def inspect(
     ranker: str = DEFAULT_RANKER,
     ranker_opt: RankerOptions = (),
     profile: str = "vlnce",
+    headings: HeadingsOpt = None,
+    ground_truth: GroundTruthOpt = None,
+    connectivity: ConnectivityOpt = None,
     host: Annotated[str, tyro.conf.arg(help="Address to bind.")] = "127.0.0.1",
     port: Annotated[int, tyro.conf.arg(help="Port to bind; 0 takes a free one.")] = 8080,
     no_browser: Annotated[bool, tyro.conf.arg(help="Do not open a browser.")] = False,
@@ -51,6 +62,8 @@ def inspect(
     setting = Setting(
         source="builtin" if traces or root else what[0],
         scenes=str(scenes) if scenes else "",
+        headings=str(headings) if headings else "",
+        ground_truth=str(ground_truth) if ground_truth else "",
         profile=profile,
         ranker=ranker,
         ranker_options=key_values(ranker_opt),
@@ -59,15 +72,24 @@ def inspect(
     if with_ and not traces:
         message = f"expected traces or a run folder beside --with, came {' '.join(what)}"
         raise UsageError(message)
+    if (headings or ground_truth) and (traces or root):
+        message = "expected --headings and --ground-truth beside a source: recordings keep theirs"
+        raise UsageError(message)
+    graphs = connectivity_folder(connectivity, scenes)
     if root is not None and not traces:
         # Nothing can be stepped yet, but how far the run is can be told.
         serve_runs(pages_of(root, scenes), host=host, port=port, ready=_tell_pages)
         return 0
-    opened = opened_traces(traces, setting, beside=with_) if traces else opened_source(setting)
+    opened = (
+        opened_traces(traces, setting, beside=with_, connectivity=graphs)
+        if traces
+        else opened_source(setting, connectivity=graphs)
+    )
     opened = replace(opened, blind=blind)
     runs = None
     if root is not None:
-        opened, runs = with_later_traces(opened, root, setting), pages_of(root, scenes)
+        opened = with_later_traces(opened, root, setting, connectivity=graphs)
+        runs = pages_of(root, scenes)
     ready = _tell if runs is None else _tell_run
     serve(opened, host=host, port=port, no_browser=no_browser, ready=ready, runs=runs, beside=with_)
     return 0

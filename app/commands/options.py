@@ -22,6 +22,10 @@ ScenesOpt = Annotated[
     Path | None,
     tyro.conf.arg(metavar="DIR", help="Folder below which scene ids resolve."),
 ]
+ConnectivityOpt = Annotated[
+    Path | None,
+    tyro.conf.arg(metavar="DIR", help="Folder of Matterport graphs, SCAN_connectivity.json."),
+]
 EpisodesOpt = Annotated[
     str, tyro.conf.arg(metavar="IDS", help="Episode ids, as in 1,5-9; all by default.")
 ]
@@ -30,9 +34,32 @@ RankerOptions = Annotated[
     tyro.conf.UseAppendAction,
     tyro.conf.arg(metavar="KEY=VALUE", help="An option of the ranker; repeat for more."),
 ]
+HeadingsOpt = Annotated[
+    Path | None,
+    tyro.conf.arg(metavar="FILE", help="Take start rotations from this file of the same episodes."),
+]
+GroundTruthOpt = Annotated[
+    Path | None,
+    tyro.conf.arg(metavar="FILE", help="Reference positions; the `_gt` file beside by default."),
+]
 JsonOpt = Annotated[bool, tyro.conf.arg(help="Print one JSON object and nothing else.")]
 
+BESIDE_SCENES = "connectivity"
+"""Folder below the scenes that is taken where no folder of graphs is named."""
+
 _RANGE = re.compile(r"(\d+)-(\d+)")
+
+
+def connectivity_folder(named: Path | None, scenes: Path | None) -> Path | None:
+    """Where connectivity graphs lie; raises `UsageError` when what was named is no folder."""
+    if named is not None and not named.is_dir():
+        message = (
+            f"expected a folder of SCAN_connectivity.json files, came --connectivity {named}; "
+            "take Matterport3DSimulator's folder `connectivity`"
+        )
+        raise UsageError(message)
+    beside = None if scenes is None else scenes / BESIDE_SCENES
+    return named or (beside if beside is not None and beside.is_dir() else None)
 
 
 def words(text: str) -> tuple[str, ...]:

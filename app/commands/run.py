@@ -14,6 +14,8 @@ import tyro
 
 from app.commands.options import (
     EpisodesOpt,
+    GroundTruthOpt,
+    HeadingsOpt,
     JsonOpt,
     RankerOptions,
     ScenesOpt,
@@ -45,12 +47,8 @@ def run(
     episodes: EpisodesOpt = "",
     seeds: Annotated[str, tyro.conf.arg(metavar="N,N", help="Run seeds.")] = "0",
     profile: Annotated[str, tyro.conf.arg(help="Embodiment profile.")] = "vlnce",
-    headings: Annotated[
-        Path | None, tyro.conf.arg(metavar="FILE", help="Start rotations of the same episodes.")
-    ] = None,
-    ground_truth: Annotated[
-        Path | None, tyro.conf.arg(metavar="FILE", help="Reference positions for nDTW.")
-    ] = None,
+    headings: HeadingsOpt = None,
+    ground_truth: GroundTruthOpt = None,
     workers: Annotated[int, tyro.conf.arg(help="Processes, actors or jobs; one core each.")] = 1,
     executor: Annotated[str, tyro.conf.arg(help=f"One of {', '.join(EXECUTORS)}.")] = "local",
     executor_opt: Annotated[

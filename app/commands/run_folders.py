@@ -41,7 +41,9 @@ def pages_of(root: Path, scenes: Path | None) -> RunPages:
     )
 
 
-def with_later_traces(opened: Opened, root: Path, setting: Setting) -> Opened:
+def with_later_traces(
+    opened: Opened, root: Path, setting: Setting, *, connectivity: Path | None = None
+) -> Opened:
     """The same, opening also what was finished since: a run may still be going on.
 
     Only traces below the folder can be asked for.
@@ -53,7 +55,7 @@ def with_later_traces(opened: Opened, root: Path, setting: Setting) -> Opened:
         if path.suffix != ".mcap" or not path.resolve().is_relative_to(root.resolve()):
             message = f"expected a trace below {root}, came {entry!r}"
             raise UsageError(message)
-        return opened_traces((path,), setting)
+        return opened_traces((path,), setting, connectivity=connectivity)
 
     def owner(entry: str) -> Opened:
         return opened if entry in known else alone(entry)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -29,6 +29,7 @@ from c2nav_engine.runner.reshell import source_of_record
 from c2nav_engine.runner.scene_cache import cache_folder, display_scene
 from c2nav_engine.runner.source import Source
 from c2nav_engine.runner.worlds import World, Worlds, WorldsConfig
+from c2nav_engine.world.connectivity import ConnectivityGraph, connectivity_of
 from c2nav_engine.world.scene import Scene
 from c2nav_engine.world.surface import Surface
 
@@ -55,8 +56,13 @@ def trace_files(what: Sequence[str]) -> tuple[Path, ...]:
     return tuple(found)
 
 
-def opened_source(setting: Setting) -> Opened:
-    """Live episodes of `builtin` or an episode file."""
+def opened_source(setting: Setting, *, connectivity: Path | None = None) -> Opened:
+    """Live episodes of `builtin` or an episode file.
+
+    Args:
+        setting: What is asked, by whom, and where.
+        connectivity: Folder of the scans' connectivity graphs, for the map.
+    """
     source = source_of(setting)
     profile = profile_named(setting.profile)
     worlds = Worlds(source, WorldsConfig(profile))
@@ -64,7 +70,7 @@ def opened_source(setting: Setting) -> Opened:
         Entry(item.episode_id, f"episode {item.episode_id} · {item.instruction}")
         for item in source.file.episodes
     )
-    live = Live(source, worlds, profile, setting)
+    live = Live(source, worlds, profile, setting, connectivity=connectivity)
     return Opened(
         title=source.file.name,
         entries=entries,
@@ -82,7 +88,16 @@ def opened_source(setting: Setting) -> Opened:
 class Live:
     """Opens and forks live episodes of one source."""
 
-    def __init__(self, source: Source, worlds: Worlds, profile: Profile, setting: Setting) -> None:
+    def __init__(
+        self,
+        source: Source,
+        worlds: Worlds,
+        profile: Profile,
+        setting: Setting,
+        *,
+        connectivity: Path | None = None,
+    ) -> None:
+        self._connectivity = connectivity
         self._source = source
         self._worlds = worlds
         self._profile = profile
@@ -106,6 +121,7 @@ class Live:
             run=run,
             scene=shown,
             world=lambda: worlds().of(run.header.episode.scene_id),
+            viewpoints=_viewpoints(self._connectivity, run.header.episode.scene_id),
         )
 
     def fork(self, wanted: ForkAt) -> Run:
@@ -137,7 +153,11 @@ class Live:
 
 
 def opened_traces(
-    paths: Sequence[Path], setting: Setting, *, beside: Sequence[Path] = ()
+    paths: Sequence[Path],
+    setting: Setting,
+    *,
+    beside: Sequence[Path] = (),
+    connectivity: Path | None = None,
 ) -> Opened:
     """Recorded episodes; forks where the scene is to be had.
 
@@ -145,6 +165,7 @@ def opened_traces(
         paths: The traces.
         setting: Where scenes lie, and who answers in forks.
         beside: Re-evaluations whose answers stand beside the recorded ones.
+        connectivity: Folder of the scans' connectivity graphs, for the map.
 
     Raises:
         C2NavError: A trace or re-evaluation cannot be read, or a re-evaluation is of other traces.
@@ -158,7 +179,10 @@ def opened_traces(
         title=title,
         entries=entries,
         first=Choice(entries[0].entry_id, ranker=setting.ranker),
-        open=lambda choice: _recorded(by_id[choice.entry_id], scenes, reasked),
+        open=lambda choice: replace(
+            opened := _recorded(by_id[choice.entry_id], scenes, reasked),
+            viewpoints=_viewpoints(connectivity, opened.header.episode.scene_id),
+        ),
         fork=partial(_fork_recorded, setting),
         rankers=tuple(RANKERS),
         book=lambda entry, sha256: (
@@ -254,6 +278,10 @@ def _recorded(path: Path, scenes: Path | None, reasked: Mapping[str, ByDecision]
         reasked=reasked.get(trace.sha256, NOTHING),
         world=None if why else world,
     )
+
+
+def _viewpoints(folder: Path | None, scene_id: str) -> Callable[[], ConnectivityGraph] | None:
+    return None if folder is None else partial(connectivity_of, folder, scene_id)
 
 
 def _fork_recorded(setting: Setting, wanted: ForkAt) -> Run:

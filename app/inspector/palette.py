@@ -59,6 +59,10 @@ ACTIONS: tuple[tuple[str, str, Command], ...] = (
     ("Hide the goal", "G", c.Layer(name="goal", on=False)),
     ("Show the reference path", "", c.Layer(name="reference", on=True)),
     ("Hide the reference path", "", c.Layer(name="reference", on=False)),
+    ("Show the walkable floor", "", c.Layer(name="floor", on=True)),
+    ("Hide the walkable floor", "", c.Layer(name="floor", on=False)),
+    ("Show the viewpoints of the connectivity graph", "", c.Layer(name="viewpoints", on=True)),
+    ("Hide the viewpoints", "", c.Layer(name="viewpoints", on=False)),
     ("Forget the asked place", "", c.ForgetPlace()),
 )
 

@@ -26,12 +26,14 @@ from app.inspector.panels.protocol import Build, Update
 from app.inspector.scene.body import Body
 from app.inspector.scene.cameras import Cameras
 from app.inspector.scene.fan import Fan
+from app.inspector.scene.floor import Floor
 from app.inspector.scene.goal import Goal
 from app.inspector.scene.layer import Layer
 from app.inspector.scene.lookback import LookBack
 from app.inspector.scene.mesh import Mesh
 from app.inspector.scene.pin import Pin
 from app.inspector.scene.trajectory import Trajectory
+from app.inspector.scene.viewpoints import Viewpoints
 from app.session.snapshot import Snapshot
 from app.session.worker import Session
 
@@ -135,6 +137,8 @@ class Shell:
             Body(scene),
             Fan(scene, self._session.dispatch),
             Goal(scene),
+            Floor(scene),
+            Viewpoints(scene),
             LookBack(scene),
             Pin(scene, self._session.dispatch),
             self._cameras,

@@ -25,6 +25,7 @@ from app.session.story import Story, story_of
 from c2nav_engine.errors import C2NavError
 from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.runner.worlds import World
+from c2nav_engine.world.connectivity import ConnectivityGraph
 from c2nav_engine.world.scene import Scene
 from c2nav_engine.world.surface import Surface
 
@@ -79,6 +80,7 @@ class Desk:
         self.floor: Callable[[], Surface] | None = None
         self.assessing = False
         self.world: Callable[[], World] | None = None
+        self.viewpoints: Callable[[], ConnectivityGraph] | None = None
         self.searches: dict[str, Search] = {}
         self._generation = 0
         self._branch_serial = 0
@@ -132,6 +134,7 @@ class Desk:
         self.assessor = assessor_of(opening)
         self.floor = opening.floor
         self.world = opening.world
+        self.viewpoints = opening.viewpoints
         self._leave_searches()
         return Snapshot(
             version=0,

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from app.session import asking, driving, judging, moving, placing, reviewing, turning
+from app.session import asking, driving, judging, moving, overlaying, placing, reviewing, turning
 from app.session import commands as c
 from app.session.branches import Origin
 from app.session.consent import Consent
@@ -57,6 +57,7 @@ def _open(desk: Desk, command: c.Open) -> None:
     )
     driving.settle(desk, desk.snapshot.branch.branch_id)
     desk.assess(desk.snapshot.branch.branch_id)
+    overlaying.lay(desk, desk.snapshot.view.layers)
 
 
 def _press(desk: Desk, command: c.Press) -> None:
@@ -132,6 +133,8 @@ def _layer(desk: Desk, command: c.Layer) -> None:
     layers = desk.snapshot.view.layers
     layers = layers | {command.name} if command.on else layers - {command.name}
     desk.change(view=replace(desk.snapshot.view, layers=layers))
+    if command.on:
+        overlaying.lay(desk, (command.name,))
 
 
 def _judged(change: Callable[[Any], judging.Change]) -> Handler:

@@ -14,6 +14,7 @@ from c2nav_engine.navigator.requests import Request
 from c2nav_engine.runner.exchange import Exchange, Override
 from c2nav_engine.runner.record import Footer, Header
 from c2nav_engine.runner.worlds import World
+from c2nav_engine.world.connectivity import ConnectivityGraph
 from c2nav_engine.world.scene import Scene
 from c2nav_engine.world.surface import Surface
 
@@ -114,6 +115,7 @@ class Opening:
         reasked: What a re-evaluation says of the recording, by decision.
         world: Loads the scene to drive through again, anew each time, because a world serves one
             thread; None where it is not to be had.
+        viewpoints: Reads the scan's connectivity graph; None where no folder was named.
     """
 
     header: Header
@@ -127,6 +129,7 @@ class Opening:
     no_scene: str = ""
     reasked: ByDecision = field(default_factory=lambda: NOTHING)
     world: Callable[[], World] | None = None
+    viewpoints: Callable[[], ConnectivityGraph] | None = None
 
     @property
     def floor(self) -> Callable[[], Surface] | None:

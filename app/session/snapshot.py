@@ -10,6 +10,7 @@ from app.session.branches import Branch
 from app.session.decisions import Decision
 from app.session.draft import Draft
 from app.session.opened import Choice, Entry
+from app.session.overlay_state import NO_OVERLAYS, Overlays
 from app.session.reasked import NOTHING, ByDecision, Reasked, shared_until
 from app.session.story import Stop, Story
 from app.session.turning_state import Turning
@@ -17,8 +18,11 @@ from c2nav_engine.contract.outcome import Answered, Key
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.geometry import Point
 
-LAYERS = ("scene", "trajectory", "fan", "goal", "reference", "markers", "thumbnails")
-"""What can be shown and hidden in the map; goal and reference path start hidden."""
+LAYERS = (
+    *("scene", "trajectory", "fan", "goal", "reference"),
+    *("markers", "thumbnails", "floor", "viewpoints"),
+)
+"""What can be shown and hidden in the map."""
 
 LAYERS_AT_FIRST = frozenset(("scene", "trajectory", "fan", "markers", "thumbnails"))
 
@@ -223,6 +227,7 @@ class Snapshot:
         assessed: Branch → decision → what the truth says of it.
         reasked: Decision of the root → what a re-evaluation says of its question.
         turning: Failed branch → its turning points, as far as they are known.
+        overlays: Walkable floor and viewpoints, once they were asked for.
     """
 
     version: int
@@ -255,6 +260,7 @@ class Snapshot:
     )
     reasked: ByDecision = field(default_factory=lambda: NOTHING)
     turning: dict[str, Turning] = field(default_factory=dict[str, Turning])
+    overlays: Overlays = NO_OVERLAYS
 
     @property
     def here(self) -> Stop:

@@ -11,7 +11,7 @@ import heapq
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from pydantic import BaseModel, Field, TypeAdapter, ValidationError
 
@@ -121,6 +121,16 @@ def read_connectivity(path: Path) -> ConnectivityGraph:
             )
             raise SceneError(message)
     return _graph(path.stem.removesuffix(_SUFFIX), entries)
+
+
+def connectivity_file(folder: Path, scene_id: str) -> Path:
+    """Where a folder of such files has the graph of a scene id's scan."""
+    return folder / f"{PurePosixPath(scene_id).stem}{_SUFFIX}.json"
+
+
+def connectivity_of(folder: Path, scene_id: str) -> ConnectivityGraph:
+    """The graph of a scene id's scan, from a folder of such files; raises `SceneError`."""
+    return read_connectivity(connectivity_file(folder, scene_id))
 
 
 def _graph(scan: str, entries: list[_Entry]) -> ConnectivityGraph:

@@ -64,6 +64,23 @@ def test_what_is_missing_reads_as_json(capsys, shared):
     assert found["ground_truth"] == "R2R_VLNCE_v1-2_val_unseen_gt.json.gz"
 
 
+def test_without_scans_episodes_are_held_against_connectivity_graphs(capsys, shared, tmp_path):
+    graphs = ("--connectivity", str(shared / "data/connectivity"))
+    words = ("episodes", "check", str(shared / OPENNAV), "--json", *graphs)
+    found = json.loads(told(capsys, *words, code=1))
+    assert found["on_graph"] == 100
+    assert found["findings"] == []
+    words = (*words[:-1], str(tmp_path / "nowhere"))
+    assert "--connectivity" in told(capsys, *words, code=2)
+
+
+def test_recordings_keep_their_headings(capsys, shared, tmp_path):
+    (tmp_path / "traces").mkdir()
+    (tmp_path / "traces" / "1.full.0.mcap").touch()
+    words = ("inspect", str(tmp_path), "--headings", str(shared / OPENNAV))
+    assert "recordings keep theirs" in told(capsys, *words, code=2)
+
+
 def test_a_run_without_its_scans_is_refused_at_once(capsys, shared, tmp_path):
     words = ("run", str(shared / OPENNAV), "--out", str(tmp_path / "run"))
     error = told(capsys, *words, "--scenes", str(tmp_path), code=2)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import viser
@@ -12,7 +13,8 @@ import viser
 from app.inspector.scene.cutting import CUT_M, cut_below
 from app.inspector.scene.glb import Surface, pack
 from app.inspector.scene.layer import Group
-from app.inspector.scene.section import Section, section_of
+from app.inspector.scene.section import section_of
+from app.inspector.scene.storey import storey_of
 from app.session.snapshot import Snapshot
 from c2nav_engine.geometry import Point
 from c2nav_engine.world.scene import Scene
@@ -22,8 +24,19 @@ log = logging.getLogger(__name__)
 _CHUNK_TRIANGLES = 150_000
 """Triangles of one message: the page shows parts as they arrive and stays usable meanwhile."""
 
-_STOREY_M = 1.0
-"""The cut follows the body once the floor has changed by more than this."""
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cut:
+    """A mesh and the height it is cut at; equal for one mesh object and height."""
+
+    mesh: Scene
+    height_m: float
+
+    def __eq__(self, other: object) -> bool:
+        """Meshes of millions of triangles are told apart by identity."""
+        if not isinstance(other, Cut):
+            return NotImplemented
+        return self.mesh is other.mesh and self.height_m == other.height_m
 
 
 class Mesh:
@@ -37,11 +50,13 @@ class Mesh:
         """Remember where the loaded scene is found."""
         self._scene = scene
         self._fetch = fetch
-        self._drawn: tuple[int, float] | None = None
+        self._wanted: Cut | None = None
+        self._drawn: Cut | None = None
         self._shown = True
         self._handles: list[viser.SceneNodeHandle] = []
         self._grid = Group(scene, "/floor")
-        self._job: threading.Thread | None = None
+        self._lock = threading.Lock()
+        self._working = False
 
     def update(self, snapshot: Snapshot) -> None:
         """Send the mesh once it is there, and again on another storey."""
@@ -50,20 +65,12 @@ class Mesh:
         missing = bool(snapshot.no_scene) and mesh is None
         start_m = snapshot.story.header.episode.start.position_m
         self._grid.draw(start_m if missing else None, lambda: self._floor(start_m))
-        floor_m = snapshot.story.track.footsteps[snapshot.here.step].pose.position_m[1]
-        if self._job is not None and self._job.is_alive():
-            return
-        if self._drawn is not None and self._drawn[0] != snapshot.scene_serial:
-            self._clear()
-        if mesh is not None and self._other_storey(floor_m):
-            self._drawn = (snapshot.scene_serial, floor_m)
-            self._job = threading.Thread(
-                target=self._replace, args=(mesh, floor_m + CUT_M), name="c2nav-mesh", daemon=True
-            )
-            self._job.start()
-
-    def _other_storey(self, floor_m: float) -> bool:
-        return self._drawn is None or abs(self._drawn[1] - floor_m) >= _STOREY_M
+        with self._lock:
+            self._wanted = None if mesh is None else Cut(mesh, storey_of(snapshot) + CUT_M)
+            if self._wanted == self._drawn or self._working:
+                return
+            self._working = True
+        threading.Thread(target=self._keep_up, name="c2nav-mesh", daemon=True).start()
 
     def _show(self, shown: bool) -> None:
         self._shown = shown
@@ -71,12 +78,22 @@ class Mesh:
             if handle.visible != shown:
                 handle.visible = shown
 
-    def _replace(self, mesh: Scene, height_m: float) -> None:
+    def _keep_up(self) -> None:
+        """Draw until what is drawn is what is wanted, which may change meanwhile."""
+        while True:
+            with self._lock:
+                if self._wanted == self._drawn:
+                    self._working = False
+                    return
+                self._drawn = wanted = self._wanted
+            self._replace(wanted)
+
+    def _replace(self, wanted: Cut | None) -> None:
         """Runs in a thread of its own, where nobody else would hear of what goes wrong."""
         try:
             stale, self._handles = self._handles, []
             kept: set[str] = set()
-            for handle in self._send(mesh, height_m):
+            for handle in () if wanted is None else draw_cut(self._scene, wanted):
                 kept.add(handle.name)
                 handle.visible = self._shown
                 self._handles.append(handle)
@@ -100,38 +117,40 @@ class Mesh:
             )
         ]
 
-    def _clear(self) -> None:
-        for handle in self._handles:
-            handle.remove()
-        self._handles = []
-        self._drawn = None
 
-    def _send(self, mesh: Scene, height_m: float) -> Iterator[viser.SceneNodeHandle]:
-        for index, surfaces in enumerate(chunks(mesh, height_m)):
-            yield self._scene.add_glb(
-                f"/scene/part{index}", pack(surfaces), cast_shadow=False, receive_shadow=False
-            )
-        section = section_of(_groups(mesh), height_m)
-        if section is not None:
-            yield self._send_section(section, height_m)
+def draw_cut(scene: viser.SceneApi, cut: Cut) -> Iterator[viser.SceneNodeHandle]:
+    """Send what lies below a cut, and its cut face."""
+    yield from draw_parts(scene, cut)
+    yield from draw_section(scene, cut)
 
-    def _send_section(self, section: Section, height_m: float) -> viser.SceneNodeHandle:
-        return self._scene.add_image(
-            "/scene/section",
-            section.rgba,
-            section.size_m[0],
-            section.size_m[1],
-            format="png",
-            # viser's picture stands in x and y and looks along −z: lay it on its back.
-            wxyz=(0.7071068, 0.7071068, 0.0, 0.0),
-            position=(section.centre_m[0], height_m + 0.002, section.centre_m[1]),
-            cast_shadow=False,
-            receive_shadow=False,
+
+def draw_parts(scene: viser.SceneApi, cut: Cut) -> Iterator[viser.SceneNodeHandle]:
+    """Send the mesh below the cut, a few parts at a time, as /scene/part0 and so on."""
+    for index, surfaces in enumerate(chunks(cut.mesh, cut.height_m)):
+        yield scene.add_glb(
+            f"/scene/part{index}", pack(surfaces), cast_shadow=False, receive_shadow=False
         )
 
 
-def _groups(mesh: Scene) -> list[np.ndarray]:
-    return [mesh.vertices_m[mesh.triangles[part.first : part.stop]] for part in mesh.parts]
+def draw_section(scene: viser.SceneApi, cut: Cut) -> Iterator[viser.SceneNodeHandle]:
+    """Send the dark cut face at /scene/section, where the plane cuts anything."""
+    mesh = cut.mesh
+    groups = [mesh.vertices_m[mesh.triangles[part.first : part.stop]] for part in mesh.parts]
+    section = section_of(groups, cut.height_m)
+    if section is None:
+        return
+    yield scene.add_image(
+        "/scene/section",
+        section.rgba,
+        section.size_m[0],
+        section.size_m[1],
+        format="png",
+        # viser's picture stands in x and y and looks along −z: lay it on its back.
+        wxyz=(0.7071068, 0.7071068, 0.0, 0.0),
+        position=(section.centre_m[0], cut.height_m + 0.002, section.centre_m[1]),
+        cast_shadow=False,
+        receive_shadow=False,
+    )
 
 
 def chunks(mesh: Scene, height_m: float) -> Iterator[list[Surface]]:

@@ -14,10 +14,9 @@ from app.inspector.scene.body import Body
 from app.inspector.scene.cameras import framed_points, overview
 from app.inspector.scene.colours import GREY
 from app.inspector.scene.cutting import CUT_M
-from app.inspector.scene.glb import pack
 from app.inspector.scene.goal import Goal
-from app.inspector.scene.mesh import chunks
-from app.inspector.scene.section import section_of
+from app.inspector.scene.mesh import Cut, draw_parts, draw_section
+from app.inspector.scene.storey import storey_of
 from app.inspector.scene.trajectory import Trajectory
 from app.inspector.still.lighter import Lightness, lighter
 from app.session.branches import Branch
@@ -42,9 +41,8 @@ def still_page(
         scene: The mesh; it is cut open and made light.
         lightness: The budget.
     """
-    _, story = runs[0]
     snapshot = _snapshot(runs)
-    height_m = story.track.footsteps[-1].pose.position_m[1] + CUT_M
+    height_m = storey_of(snapshot) + CUT_M
     light = lighter(scene, below_m=height_m, lightness=lightness)
     # viser prints its own address, which is nobody's business here.
     with contextlib.redirect_stdout(io.StringIO()):
@@ -53,8 +51,9 @@ def still_page(
         _dress(server, snapshot)
         for layer in (Trajectory(server.scene), Body(server.scene), Goal(server.scene)):
             layer.update(snapshot)
-        _draw_mesh(server.scene, light, height_m)
-        _draw_section(server.scene, scene, height_m)
+        list(draw_parts(server.scene, Cut(light, height_m)))
+        # The cut face is taken from the mesh before it was made light.
+        list(draw_section(server.scene, Cut(scene, height_m)))
         for branch, other in runs[1:]:
             _draw_other(server.scene, branch, other)
         server.flush()
@@ -87,32 +86,6 @@ def _snapshot(runs: Sequence[tuple[Branch, Story]]) -> Snapshot:
         scene_serial=1,
     )
     return replace(plain, view=replace(plain.view, layers=_LAYERS))
-
-
-def _draw_mesh(scene: viser.SceneApi, mesh: Scene, height_m: float) -> None:
-    for index, surfaces in enumerate(chunks(mesh, height_m)):
-        scene.add_glb(
-            f"/scene/part{index}", pack(surfaces), cast_shadow=False, receive_shadow=False
-        )
-
-
-def _draw_section(scene: viser.SceneApi, mesh: Scene, height_m: float) -> None:
-    """The cut face, taken from the mesh before it was made light."""
-    groups = [mesh.vertices_m[mesh.triangles[part.first : part.stop]] for part in mesh.parts]
-    section = section_of(groups, height_m)
-    if section is None:
-        return
-    scene.add_image(
-        "/scene/section",
-        section.rgba,
-        *section.size_m,
-        format="png",
-        # viser's picture stands in x and y and looks along −z: lay it on its back.
-        wxyz=(0.7071068, 0.7071068, 0.0, 0.0),
-        position=(section.centre_m[0], height_m + 0.002, section.centre_m[1]),
-        cast_shadow=False,
-        receive_shadow=False,
-    )
 
 
 def _draw_other(scene: viser.SceneApi, branch: Branch, story: Story) -> None:
