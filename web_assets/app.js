@@ -1,5 +1,5 @@
 // The page around viser's: strip, banner, timeline, waiting, keys, address.
-import { follow, link, send, state, subscribe, tab, toast } from "./store.js";
+import { at, follow, link, send, state, subscribe, tab, toast } from "./store.js";
 import { h } from "./look.js";
 import "./route-strip.js";
 import "./rank-strip.js";
@@ -105,6 +105,9 @@ document.addEventListener("click", async (event) => {
     window.prompt("Copy this", text);
   }
 });
+
+// Until then the server leaves the cores to this page; a second page changes nothing.
+window.addEventListener("c2-stands", () => fetch(at("api/standing"), { method: "POST" }), { once: true });
 
 document.addEventListener("pointermove", hovering, { passive: true });
 document.addEventListener("keydown", keys, true);

@@ -75,7 +75,9 @@ class RankStrip extends HTMLElement {
   connectedCallback() {
     const sections = ["decision", "draft", "asking", "view", "offer"];
     this.stop = subscribe((state, changed) => {
-      if (sections.some((name) => changed.has(name)) && !this.drag) this.draw(state);
+      if (this.drag || !sections.some((name) => changed.has(name))) return;
+      this.draw(state);
+      this.stands();
     });
     this.onbig = (event) => this.toggleAttribute("data-big", event.detail);
     window.addEventListener("c2-big", this.onbig);
@@ -94,6 +96,8 @@ class RankStrip extends HTMLElement {
       return;
     }
     const focused = this.shadowRoot.activeElement?.dataset.key;
+    // Pictures that nobody waits for any more must not stand in line before those in view.
+    for (const one of this.shadowRoot.querySelectorAll("img")) if (!one.complete) one.removeAttribute("src");
     const parts = [this.chips(decision), this.context(decision)];
     if (decision.cards.length) {
       const cards = h("div", { class: "cards", role: "list" });
@@ -103,6 +107,16 @@ class RankStrip extends HTMLElement {
     if (decision.asked) parts.push(this.rail(decision, state));
     this.shadowRoot.replaceChildren(...parts.filter(Boolean));
     if (focused) this.shadowRoot.querySelector(`[data-key="${CSS.escape(focused)}"]`)?.focus();
+  }
+
+  /** Say once that what is in view stands here, pictures included. */
+  stands() {
+    const waiting = [...this.shadowRoot.querySelectorAll("img")].find((one) => !one.complete);
+    if (!waiting) {
+      this.stands = () => {};
+      window.dispatchEvent(new CustomEvent("c2-stands"));
+    }
+    for (const end of ["load", "error"]) waiting?.addEventListener(end, () => this.stands(), { once: true });
   }
 
   chips(decision) {

@@ -51,8 +51,8 @@ class TimelineBar extends HTMLElement {
     this.setAttribute("aria-label", "timeline");
     this.tip = h("div", { class: "tip", hidden: true });
     this.stop = subscribe((state, changed) => {
-      if (changed.has("timeline") || changed.has("place"))
-        this.soon({ ...state.timeline, here: state.place });
+      if (changed.has("timeline")) this.soon({ ...state.timeline, here: state.place });
+      else if (changed.has("place") && this.timeline) this.soon({ ...this.timeline, here: state.place }, false);
     });
     this.sizes = new ResizeObserver(() => this.timeline && this.draw(this.timeline));
     this.sizes.observe(this);
@@ -64,25 +64,35 @@ class TimelineBar extends HTMLElement {
   }
 
   /** Draw with the next frame: while a person scrubs, several states arrive between two. */
-  soon(timeline) {
+  soon(timeline, anew = true) {
     this.timeline = timeline;
+    this.anew ||= anew;
     this.frame ??= requestAnimationFrame(() => {
       this.frame = null;
-      this.draw(this.timeline);
+      if (this.anew) this.draw(this.timeline);
+      else this.follow(this.timeline.here);
     });
+  }
+
+  /** Only the place in view has changed: hundreds of marks stay as they are. */
+  follow(here) {
+    for (const follower of this.followers ?? []) follower(here);
   }
 
   draw(timeline) {
     this.timeline = timeline;
     const width = this.clientWidth;
     if (!width) return;
+    this.anew = false;
+    this.followers = [];
     const steps = Math.max(timeline.steps, 12);
     this.x = (step) => LEFT + ((width - LEFT - RIGHT) * step) / steps;
     this.step = (x) => Math.round(((x - LEFT) * steps) / (width - LEFT - RIGHT));
     const svg = s("svg", { width, height: 112, role: "img" });
-    svg.append(...this.curve(timeline, width), ...this.lanes(timeline), ...this.here(timeline, width));
+    svg.append(...this.curve(timeline, width), ...this.lanes(timeline), ...this.here(width));
     for (const end of timeline.leg_ends ?? []) svg.append(this.flag(end));
     svg.addEventListener("pointerdown", (event) => this.scrub(event));
+    this.follow(timeline.here);
     this.shadowRoot.replaceChildren(svg, this.tip);
   }
 
@@ -92,8 +102,6 @@ class TimelineBar extends HTMLElement {
     const most = Math.max(timeline.band_m * 1.4, ...all.map(([, distance]) => distance));
     const y = (distance) => CURVE.top + CURVE.height * (1 - distance / most);
     const line = (points) => points.map(([step, d], i) => `${i ? "L" : "M"}${this.x(step)} ${y(d)}`).join("");
-    const done = timeline.curve.filter(([step]) => step <= timeline.here.step);
-    const rest = timeline.curve.filter(([step]) => step >= timeline.here.step);
     const parts = [
       s("text", { x: 14, y: CURVE.top + 8 }, "distance, m"),
       s("rect", {
@@ -113,9 +121,12 @@ class TimelineBar extends HTMLElement {
       parts.push(s("text", { class: "legname", x: this.x(step) + 4, y: y(0) - 2 }, `leg ${leg + 1}`));
     }
     if (ghost.length > 1) parts.push(s("path", { class: "rest", d: line(ghost) }));
-    if (rest.length > 1) parts.push(s("path", { class: "rest", d: line(rest) }));
-    if (done.length > 1) parts.push(s("path", { class: "curve", d: line(done) }));
-    return parts;
+    const [rest, done] = [s("path", { class: "rest" }), s("path", { class: "curve" })];
+    this.followers.push((here) => {
+      rest.setAttribute("d", line(timeline.curve.filter(([step]) => step >= here.step)));
+      done.setAttribute("d", line(timeline.curve.filter(([step]) => step <= here.step)));
+    });
+    return [...parts, rest, done];
   }
 
   lanes(timeline) {
@@ -124,14 +135,15 @@ class TimelineBar extends HTMLElement {
     for (const mark of timeline.ghost?.marks ?? []) {
       if (mark.step > timeline.last) parts.push(this.mark(mark, LANES[mark.lane], SIGNS[mark.lane], "far", null));
     }
-    const here = timeline.here;
     for (const mark of timeline.marks) {
-      const kinds = [];
-      if (mark.decision === here.decision) kinds.push("now");
-      else if (mark.step > here.step || mark.decision > here.decision) kinds.push("far");
-      if (mark.fault) kinds.push("bad");
       const sign = mark.fault ? "✕" : mark.open ? { 0: "○", 1: "△", 2: "□" }[mark.lane] : SIGNS[mark.lane];
-      parts.push(this.mark(mark, LANES[mark.lane], sign, kinds.join(" "), { decision: mark.decision }));
+      const node = this.mark(mark, LANES[mark.lane], sign, mark.fault ? "bad" : "", { decision: mark.decision });
+      this.followers.push((here) => {
+        const now = mark.decision === here.decision;
+        node.classList.toggle("now", now);
+        node.classList.toggle("far", !now && (mark.step > here.step || mark.decision > here.decision));
+      });
+      parts.push(node);
     }
     const crowd = new Map();
     for (const event of timeline.events) {
@@ -139,8 +151,10 @@ class TimelineBar extends HTMLElement {
       const place = crowd.get(event.step) ?? 0;
       const fits = this.x(event.step) + 12 * place < this.clientWidth - 8;
       crowd.set(event.step, place + 1);
-      const kind = `${event.fault ? "bad" : ""} ${event.step > here.step ? "far" : ""}`;
-      parts.push(this.mark(event, EVENTS, event.sign, kind, { step: event.step }, fits ? 12 * place : -12 * place));
+      const shift = fits ? 12 * place : -12 * place;
+      const node = this.mark(event, EVENTS, event.sign, event.fault ? "bad" : "", { step: event.step }, shift);
+      this.followers.push((here) => node.classList.toggle("far", event.step > here.step));
+      parts.push(node);
     }
     parts.push(...(timeline.place ? this.place(timeline.place) : this.regrets(timeline.regret)));
     return parts;
@@ -210,14 +224,19 @@ class TimelineBar extends HTMLElement {
     });
   }
 
-  here(timeline, width) {
-    const x = this.x(timeline.here.step);
-    const words = `step ${timeline.here.step}${timeline.here.decision >= 0 ? ` · decision ${timeline.here.decision}` : ""}`;
-    const flip = x > width - 170;
-    return [
-      s("line", { class: "here", x1: x, x2: x, y1: 2, y2: 110 }),
-      s("text", { class: "heretext", x: flip ? x - 7 : x + 7, y: 13, "text-anchor": flip ? "end" : "start" }, words),
-    ];
+  here(width) {
+    const line = s("line", { class: "here", y1: 2, y2: 110 });
+    const text = s("text", { class: "heretext", y: 13 });
+    this.followers.push(({ step, decision }) => {
+      const x = this.x(step);
+      const flip = x > width - 170;
+      line.setAttribute("x1", x);
+      line.setAttribute("x2", x);
+      text.setAttribute("x", flip ? x - 7 : x + 7);
+      text.setAttribute("text-anchor", flip ? "end" : "start");
+      text.textContent = `step ${step}${decision >= 0 ? ` · decision ${decision}` : ""}`;
+    });
+    return [line, text];
   }
 
   /** Where a person says that a leg ends; dragging says it anew. */

@@ -30,7 +30,7 @@ def api(session: Session, feed: Feed) -> APIRouter:
         return StreamingResponse(feed.events(), media_type="text/event-stream", headers=headers)
 
     @router.post("/commands", status_code=202)
-    def commands(command: Annotated[AnyCommand, Body()]) -> JSONResponse:
+    async def commands(command: Annotated[AnyCommand, Body()]) -> JSONResponse:
         """Do something; 409 when `id` is not the state's, 422 where an answer lacks its `id`."""
         if isinstance(command, Answering) and command.id is None:
             return _problem(422, "expected the id of the state that is answered")
@@ -40,8 +40,19 @@ def api(session: Session, feed: Feed) -> APIRouter:
             return _problem(409, str(error))
         return JSONResponse({"accepted": True, "id": session.snapshot.token}, 202)
 
+    @router.post("/standing", status_code=204)
+    async def standing() -> Response:
+        """A page shows the decision in view: what it can do without for now may begin."""
+        session.first_page.stands()
+        return Response(status_code=204)
+
+    _add_pictures(router, session)
+    return router
+
+
+def _add_pictures(router: APIRouter, session: Session) -> None:
     @router.get("/image/{sha256}.jpg")
-    def image(sha256: Annotated[str, Path(pattern="^[0-9a-f]{64}$")]) -> Response:
+    async def image(sha256: Annotated[str, Path(pattern="^[0-9a-f]{64}$")]) -> Response:
         """A picture in the bytes that were sent to the ranker."""
         picture = session.album.get(sha256)
         if picture is None:
@@ -57,8 +68,6 @@ def api(session: Session, feed: Feed) -> APIRouter:
             return _problem(404, "expected an entry with a picture")
         headers = {"Cache-Control": "no-cache", "ETag": f'"{picture.sha256}"'}
         return Response(picture.jpeg, media_type="image/jpeg", headers=headers)
-
-    return router
 
 
 def _problem(status: int, detail: str) -> JSONResponse:

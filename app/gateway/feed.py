@@ -9,6 +9,7 @@ from typing import Any
 
 from app.session.snapshot import Snapshot
 from app.session.state_json import state_json
+from app.session.timeline import Timelines
 from app.session.worker import Session
 
 _PULSE_S = 0.03
@@ -28,6 +29,8 @@ class Feed:
         """Follow a session; `attach` must run on the event loop before any stream is read."""
         self._session = session
         self._cached: tuple[tuple[int, int], Sections] | None = None
+        self._timelines = Timelines()
+        self._texts: dict[str, tuple[object, str]] = {}
         self._changed: set[asyncio.Event] = set()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._closing = False
@@ -62,8 +65,13 @@ class Feed:
         return self._cached[1]
 
     def _serialised(self, snapshot: Snapshot) -> Sections:
-        whole = state_json(snapshot) | {"pages": len(self._changed)}
-        return {name: _text(value) for name, value in whole.items()}
+        whole = state_json(snapshot, self._timelines) | {"pages": len(self._changed)}
+        known, self._texts = self._texts, {}
+        for name, value in whole.items():
+            was, text = known.get(name, (None, ""))
+            # What is still the same object is not written again: a timeline has 50 kB.
+            self._texts[name] = (value, text if value is was and text else _text(value))
+        return {name: text for name, (_, text) in self._texts.items()}
 
     async def events(self) -> AsyncIterator[str]:
         """Server-sent events for one page: the whole state first, then changed sections."""

@@ -27,6 +27,7 @@ from app.gateway.runs import RunPages, mount_runs
 from app.gateway.shell_page import ShellPage
 from app.inspector.shell import Shell
 from app.pages.page import ABOUT_RUNS
+from app.session.first_page import FirstPage
 from app.session.opened import Opened
 from app.session.worker import Session
 
@@ -67,7 +68,7 @@ def application(
         menu: Names of `MENU`: the pages behind the same port, which the caller mounts.
     """
     feed = Feed(session)
-    page = ShellPage(shell.port, menu)
+    page = ShellPage(shell.port, menu, asked=session.first_page.asked)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncGenerator[None]:
@@ -129,7 +130,7 @@ def serve(
     """
     listener = listen(host, port)
     address = Address(host, listener.getsockname()[1])
-    session = Session(opened)
+    session = Session(opened, first_page=FirstPage(asked_within_s=2.0, stands_within_s=8.0))
     shell = Shell(session)
     session.start()
     try:

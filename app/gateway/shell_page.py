@@ -7,7 +7,7 @@ import contextlib
 import gzip
 import http.client
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
@@ -37,10 +37,19 @@ _SHARE = b"ShareUrlRequest"
 class ShellPage:
     """Proxies one viser server on a loopback port."""
 
-    def __init__(self, port: int, menu: Sequence[str] = ()) -> None:
-        """Remember where viser listens, and which pages of `MENU` stand beside it."""
+    def __init__(
+        self, port: int, menu: Sequence[str] = (), *, asked: Callable[[], None] = lambda: None
+    ) -> None:
+        """Nothing is fetched yet.
+
+        Args:
+            port: Where viser listens.
+            menu: Which pages of `MENU` stand beside it.
+            asked: Called whenever somebody asks for the page.
+        """
         self._port = port
         self._menu = menu
+        self._asked = asked
         self._page = b""
         self._packed = b""
 
@@ -65,6 +74,7 @@ class ShellPage:
         return router
 
     async def _get(self, request: Request) -> Response:
+        self._asked()
         headers = {
             "Cache-Control": "no-cache",
             "Content-Security-Policy": VISER_POLICY,

@@ -6,6 +6,7 @@ import contextlib
 import io
 import logging
 import threading
+import time
 
 import viser
 
@@ -40,6 +41,11 @@ from app.session.worker import Session
 log = logging.getLogger(__name__)
 
 _BLUE = (0x00, 0x72, 0xB2)
+_REST_S = 0.06
+_AT_LATEST_S = 0.2
+"""The shell is drawn once nothing has changed for so long, or at the latest so long after a
+change: the page's own strip and timeline come first, and a scrub is not drawn step by step."""
+
 LEFT_PX = 520
 RIGHT_PX = 300
 
@@ -64,8 +70,10 @@ class Shell:
         self._stop_following = session.subscribe(lambda _: self._changed.set())
         self._server.on_client_connect(self._greet)
         self._changed.set()
+        self._mapped = threading.Event()
         self._painter = threading.Thread(target=self._paint, name="c2nav-paint", daemon=True)
         self._painter.start()
+        threading.Thread(target=self._begin_map, name="c2nav-map", daemon=True).start()
 
     @property
     def port(self) -> int:
@@ -151,15 +159,29 @@ class Shell:
     def _paint(self) -> None:
         while not self._closing:
             self._changed.wait()
-            self._changed.clear()
+            self._settle()
             if not self._closing:
                 self._draw(self._session.snapshot)
+
+    def _settle(self) -> None:
+        """Wait until changes have come to rest, and take note of them."""
+        latest_s = time.monotonic() + _AT_LATEST_S
+        while self._changed.is_set() and not self._closing:
+            self._changed.clear()
+            self._changed.wait(min(_REST_S, max(0.0, latest_s - time.monotonic())))
+
+    def _begin_map(self) -> None:
+        """Drawing the map takes the page a second the first time: what can be read comes first."""
+        self._session.first_page.wait()
+        self._mapped.set()
+        self._changed.set()
 
     def _draw(self, snapshot: Snapshot) -> None:
         for update in self._updates:
             self._guarded(update, snapshot)
-        for layer in self._layers:
-            self._guarded(layer.update, snapshot)
+        if self._mapped.is_set():
+            for layer in self._layers:
+                self._guarded(layer.update, snapshot)
 
     def _guarded(self, update: Update, snapshot: Snapshot) -> None:
         """One broken panel must not stop the others."""

@@ -51,10 +51,12 @@ class Hands:
     Attributes:
         background: Runs a task on another thread and applies the message it returns.
         clock: Wall clock, seconds since the epoch.
+        calm: Returns once heavy work is in nobody's way; called in the background.
     """
 
     background: Callable[[Callable[[], Message]], None]
     clock: Callable[[], float]
+    calm: Callable[[], None] = lambda: None
 
 
 class Desk:
@@ -184,6 +186,7 @@ class Desk:
         generation = self._generation
 
         def task() -> Message:
+            self.hands.calm()
             try:
                 scene = load()
             except C2NavError as error:
@@ -243,6 +246,7 @@ class Desk:
         self.assessing = True
 
         def task() -> Message:
+            self.hands.calm()
             fresh = assessor.assess(story, known)
             return lambda desk: desk.take_assessed(generation, branch_id, known | fresh)
 

@@ -4,20 +4,25 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.session.branches import Origin, cost_of, ended_words
+from app.session.branches import Origin, ended_words
 from app.session.cards import decision_json, lookback_json
 from app.session.decisions import Decision
 from app.session.route_text import route_segments
 from app.session.snapshot import Judgement, Snapshot
-from app.session.timeline import timeline_of
+from app.session.timeline import Timelines
 
 Json = dict[str, Any]
 
 SCHEMA = 1
 
 
-def state_json(snapshot: Snapshot) -> Json:
-    """Everything that the page's own elements draw."""
+def state_json(snapshot: Snapshot, timelines: Timelines | None = None) -> Json:
+    """Everything that the page's own elements draw.
+
+    Args:
+        snapshot: What to draw.
+        timelines: Those of earlier snapshots, so that one that is still right is not made again.
+    """
     decision = snapshot.decision
     return {
         "schema": SCHEMA,
@@ -55,7 +60,7 @@ def state_json(snapshot: Snapshot) -> Json:
             "blind": snapshot.view.blind,
         },
         "covered": snapshot.covered,
-        "timeline": timeline_of(snapshot),
+        "timeline": (timelines or Timelines()).of(snapshot),
         "judgement": _judgement(snapshot),
         "notice": {
             "text": snapshot.notice.text,
@@ -110,7 +115,7 @@ def _branch(snapshot: Snapshot) -> Json:
         "recipe": bool(branch.trace_sha256),
         "running": branch.running,
         "ended": ended_words(branch.footer) if branch.footer else "",
-        "decisions": cost_of(snapshot.story.decisions).decisions,
+        "decisions": sum(1 for d in snapshot.story.decisions if not d.pending),
     }
 
 

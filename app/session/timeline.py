@@ -21,6 +21,44 @@ Json = dict[str, Any]
 _SIGNS = {"fallback": "✕", "stalled": "✕", "glance": "↻", "walk-back": "↩"}
 
 
+class Timelines:
+    """The newest timeline, made anew only where what it shows has changed.
+
+    Scrubbing over hundreds of decisions changes nothing in it but the place where one stands,
+    which is no part of it.
+    """
+
+    def __init__(self) -> None:
+        """Nothing is made yet."""
+        self._newest: tuple[tuple[object, ...], Json] = ((), {})
+
+    def of(self, snapshot: Snapshot) -> Json:
+        """The same as `timeline_of`, and the same object while nothing in it has changed."""
+        shown, timeline = self._newest
+        now = _shown(snapshot)
+        if len(shown) != len(now) or any(a is not b for a, b in zip(shown, now, strict=True)):
+            timeline = timeline_of(snapshot)
+            self._newest = (now, timeline)
+        return timeline
+
+
+def _shown(snapshot: Snapshot) -> tuple[object, ...]:
+    """Every part of a snapshot that its timeline is made of; snapshots share what is the same."""
+    return (
+        snapshot.story,
+        snapshot.parent,
+        snapshot.branch,
+        snapshot.branches,
+        snapshot.who,
+        snapshot.reviews,
+        snapshot.place,
+        snapshot.assessed,
+        snapshot.reasked,
+        snapshot.turning,
+        snapshot.view.blind,
+    )
+
+
 def timeline_of(snapshot: Snapshot) -> Json:
     """Everything that `<timeline-bar>` draws; a fork's parent is drawn as a ghost."""
     story, parent = snapshot.story, snapshot.parent

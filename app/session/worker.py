@@ -15,6 +15,7 @@ from collections.abc import Callable
 from app.session import driving, moving
 from app.session.commands import Command
 from app.session.desk import Desk, Hands, Message
+from app.session.first_page import FirstPage
 from app.session.handling import handle
 from app.session.opened import Opened
 from app.session.pictures import Album
@@ -37,15 +38,31 @@ class StaleCommand(C2NavError):
 class Session:
     """What is open, where one stands, and the thread that changes either."""
 
-    def __init__(self, opened: Opened, *, clock: Callable[[], float] = time.time) -> None:
-        """Open the source's first choice; raises `C2NavError` when that cannot be done."""
+    def __init__(
+        self,
+        opened: Opened,
+        *,
+        clock: Callable[[], float] = time.time,
+        first_page: FirstPage | None = None,
+    ) -> None:
+        """Open the source's first choice.
+
+        Args:
+            opened: What to show.
+            clock: Wall clock, seconds since the epoch.
+            first_page: What scene and suspects wait for; nothing by default.
+
+        Raises:
+            C2NavError: When that cannot be opened.
+        """
         self.album = Album()
+        self.first_page = first_page or FirstPage()
         self._clock = clock
         self._inbox: queue.Queue[Command | Message | None] = queue.Queue()
         self._thumbnails: dict[str, Picture | None] = {}
         self._subscribers: list[Subscriber] = []
         self._closing = threading.Event()
-        self._desk = Desk(opened, self.album, Hands(self._background, clock))
+        self._desk = Desk(opened, self.album, Hands(self._background, clock, self.first_page.wait))
         self._behind: Snapshot = self._desk.snapshot
         self._published: Snapshot = self._drawn()
         self._worker = threading.Thread(target=self._work, name="c2nav-session", daemon=True)

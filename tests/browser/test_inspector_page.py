@@ -163,3 +163,54 @@ def test_the_page_says_what_it_waits_for_and_stays_alive(browser: Browser):
         seen.until_node("/goal/disc")
         gate.set()
         seen.until(proposal(0))
+
+
+TIMELINE = "document.querySelector('timeline-bar')"
+DRAWN = f"""[...{TIMELINE}.shadowRoot.querySelectorAll('svg *')].map((node) => [
+  node.tagName, [...node.classList].sort().join(' '), node.textContent,
+  ...['x', 'x1', 'text-anchor', 'd'].map((name) => node.getAttribute(name)),
+].join('|'))"""
+
+
+def test_a_timeline_that_follows_looks_like_one_that_is_drawn_anew(recorded: Live):
+    seen, _ = recorded
+    for decision in (9, 3, 6):
+        seen.page.evaluate(f"c2nav.send('go', {{decision: {decision}}})")
+        words = f"{TIMELINE}.shadowRoot.querySelector('.heretext').textContent"
+        seen.page.wait_for_function(f"{words}.endsWith('decision {decision}')")
+        followed = seen.page.evaluate(DRAWN)
+        seen.page.evaluate(f"{TIMELINE}.draw({TIMELINE}.timeline)")
+        assert followed == seen.page.evaluate(DRAWN)
+        assert len(seen.page.locator("timeline-bar .mark.now").all()) == 1
+
+
+SCRUB = """
+async () => {
+  const bar = document.querySelector("timeline-bar"), box = bar.getBoundingClientRect();
+  const marks = c2nav.state.timeline.marks, target = marks[marks.length - 3];
+  const fire = (node, type, step) => node.dispatchEvent(new PointerEvent(type, {
+    bubbles: true, clientX: box.left + bar.x(step), clientY: box.top + 60, button: 0,
+  }));
+  fire(bar.shadowRoot.querySelector("svg"), "pointerdown", 0);
+  for (let step = 1; step <= target.step; step++) fire(window, "pointermove", step);
+  fire(window, "pointerup", target.step);
+  return target;
+}
+"""
+
+
+def test_a_scrub_ends_where_the_pointer_was_let_go_with_all_its_pictures(recorded: Live):
+    seen, session = recorded
+    target = seen.page.evaluate(SCRUB)
+    seen.until(f"s.place.step === {target['step']}")
+    assert session.snapshot.here.step == target["step"]
+    seen.page.wait_for_function(
+        """words => {
+          const root = document.querySelector('rank-strip').shadowRoot;
+          return root.querySelector('.chip').textContent.startsWith(words)
+            && [...root.querySelectorAll('img')].every(one => one.complete && one.naturalWidth > 0);
+        }""",
+        arg=f"decision {target['decision']} ",
+    )
+    seen.page.reload()
+    seen.until(f"s.place.step === {target['step']} && s.decision.number === {target['decision']}")

@@ -1,0 +1,71 @@
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+
+import pytest
+from fastapi import FastAPI
+from starlette.testclient import TestClient
+
+from app.gateway.api import api
+from app.gateway.feed import Feed
+from app.session.first_page import FirstPage
+from app.session.worker import Session
+from c2nav_engine.errors import SceneError
+from tests.helpers import stage
+
+NEVER_S = 60.0
+AT_ONCE_S = 0.01
+
+
+def begun(first: FirstPage) -> threading.Event:
+    """Set once heavy work may begin."""
+    event = threading.Event()
+
+    def wait() -> None:
+        first.wait()
+        event.set()
+
+    threading.Thread(target=wait, daemon=True).start()
+    return event
+
+
+def test_by_default_nothing_waits():
+    FirstPage().wait()
+
+
+def test_heavy_work_waits_until_a_page_stands():
+    first = FirstPage(asked_within_s=NEVER_S, stands_within_s=NEVER_S)
+    work = begun(first)
+    assert not work.wait(AT_ONCE_S)
+    first.asked()
+    assert not work.wait(AT_ONCE_S)
+    first.stands()
+    assert work.wait(NEVER_S)
+    first.wait()  # and from then on nothing waits
+
+
+@pytest.mark.parametrize(
+    "come", [lambda _: None, FirstPage.asked], ids=["nobody comes", "a page that never stands"]
+)
+def test_nobody_is_waited_for_without_end(come: Callable[[FirstPage], None]):
+    first = FirstPage(asked_within_s=AT_ONCE_S, stands_within_s=AT_ONCE_S)
+    come(first)
+    assert begun(first).wait(NEVER_S)
+
+
+def test_a_scene_is_loaded_after_the_page_that_says_it_stands():
+    loaded = threading.Event()
+
+    def load() -> None:
+        loaded.set()
+        raise SceneError("expected a scene, came none")
+
+    first = FirstPage(asked_within_s=NEVER_S, stands_within_s=NEVER_S)
+    session = Session(stage.opened_recording(cycles=2, scene=load), first_page=first)
+    app = FastAPI()
+    app.include_router(api(session, Feed(session)))
+    assert not loaded.wait(AT_ONCE_S)
+    assert TestClient(app).post("/api/standing").status_code == 204
+    assert loaded.wait(NEVER_S)
+    session.close()
