@@ -130,7 +130,14 @@ def connectivity_file(folder: Path, scene_id: str) -> Path:
 
 def connectivity_of(folder: Path, scene_id: str) -> ConnectivityGraph:
     """The graph of a scene id's scan, from a folder of such files; raises `SceneError`."""
-    return read_connectivity(connectivity_file(folder, scene_id))
+    path = connectivity_file(folder, scene_id)
+    if not path.is_file():
+        message = (
+            f"expected {path.name} in {folder}, found none; Matterport3DSimulator's folder "
+            "`connectivity` has one for every scan"
+        )
+        raise SceneError(message)
+    return read_connectivity(path)
 
 
 def _graph(scan: str, entries: list[_Entry]) -> ConnectivityGraph:

@@ -10,7 +10,11 @@ from typing import Any
 import pytest
 
 from c2nav_engine.errors import SceneError
-from c2nav_engine.world.connectivity import ConnectivityGraph, read_connectivity
+from c2nav_engine.world.connectivity import (
+    ConnectivityGraph,
+    connectivity_of,
+    read_connectivity,
+)
 
 
 def entry(name: str, at: tuple[float, float, float], ways: list[bool], **more: object) -> Any:
@@ -72,6 +76,11 @@ def test_a_broken_file_is_named(tmp_path: Path, entries: object, words: list[str
         graph_of(tmp_path, entries)
     for word in ["some_connectivity.json", *words]:
         assert word in str(caught.value)
+
+
+def test_a_scan_without_a_graph_is_named(tmp_path: Path):
+    with pytest.raises(SceneError, match=r"expected SCAN_connectivity\.json in .*found none"):
+        connectivity_of(tmp_path, "mp3d/SCAN/SCAN.glb")
 
 
 def test_a_missing_file_is_named(tmp_path: Path):

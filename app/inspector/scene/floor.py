@@ -46,7 +46,7 @@ class Floor:
                 corners.astype(np.float32),
                 np.arange(len(corners), dtype=np.uint32).reshape(-1, 3),
                 color=SLATE,
-                opacity=0.35,
+                opacity=0.45,
                 side="double",
                 position=(0.0, _LIFT_M, 0.0),
                 cast_shadow=False,
