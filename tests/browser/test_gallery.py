@@ -14,7 +14,7 @@ from app.commands.sources import opened_source, opened_traces
 from app.session.opened import Opened, Opening
 from c2nav_engine.experiments.spec import Setting
 from tests.helpers import stage
-from tests.helpers.gallery import LARGE, SMALL, shots, tab
+from tests.helpers.gallery import LARGE, SMALL, copy_of, shots, tab
 from tests.helpers.layout import problems
 from tests.helpers.page import Visit, inspector, visit
 
@@ -42,8 +42,8 @@ def walk(seen: Visit) -> dict[str, list[str]]:
 
 
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
-def test_a_recorded_run_fits_in_every_view(browser: Browser, dark: bool):
-    opened = opened_traces([GOLDEN], Setting(source="builtin"))
+def test_a_recorded_run_fits_in_every_view(browser: Browser, dark: bool, tmp_path: Path):
+    opened = opened_traces([copy_of(GOLDEN, tmp_path)], Setting(source="builtin"))
     with inspector(opened) as (url, _), visit(browser, url, size=SMALL, dark=dark) as seen:
         assert walk(seen) == {}
         assert not seen.errors

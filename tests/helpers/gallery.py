@@ -8,6 +8,8 @@
 from __future__ import annotations
 
 import argparse
+import shutil
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -99,8 +101,24 @@ def shots(seen: Visit) -> dict[str, Arrange]:
         "follow": then(send("'forget_place'"), send("'camera', {mode: 'follow'}")),
         "top-down": send("'camera', {mode: 'top'}"),
         "ego": send("'camera', {mode: 'ego'}"),
+        "review": then(
+            send("'camera', {mode: 'free'}"),
+            go(election),
+            tab("Decision", "Review"),
+            key("w"),
+            key("Shift+Digit2"),
+            send("'tag', {value: 'wrong object'}"),
+            send("'remark', {text: 'The folding door lies on the left.'}"),
+            send("'leg_end', {leg: 0, step: c2nav.state.place.step}"),
+            until("s.judgement.better && s.judgement.note && s.timeline.leg_ends.length"),
+        ),
         "keys": then(send("'camera', {mode: 'free'}"), key("?")),
     }
+
+
+def copy_of(trace: Path, folder: Path) -> Path:
+    """The trace in another folder: reviews are stored beside it."""
+    return Path(shutil.copy(trace, folder))
 
 
 def main() -> None:
@@ -112,11 +130,11 @@ def main() -> None:
     reader.add_argument("--only", default="", help="names of views, with commas between")
     given = reader.parse_args()
     setting = Setting(source="builtin", scenes=given.scenes, profile="vlnce")
-    opened = opened_traces((given.trace,), setting)
     for dark, size in ((False, LARGE), (True, SMALL)):
         with (
+            tempfile.TemporaryDirectory() as folder,
             chromium() as browser,
-            inspector(opened) as (url, _),
+            inspector(opened_traces((copy_of(given.trace, Path(folder)),), setting)) as (url, _),
             visit(browser, url, size=size, dark=dark) as seen,
         ):
             seen.until_node("/scene/section")
