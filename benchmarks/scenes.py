@@ -1,6 +1,6 @@
 """Time and memory of opening, seeing, walking and showing meshes of different sizes.
 
-python benchmarks/scenes.py [--triangles 100000 10000000] [--views 5]
+python -m benchmarks.scenes [--triangles 100000 10000000] [--views 40]
 
 Each size runs in a process of its own, so that its memory is its own.
 """
@@ -178,7 +178,7 @@ def in_a_process(triangles: int, views: int) -> dict[str, float]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--triangles", type=int, nargs="+", default=[100_000, 10_000_000])
-    parser.add_argument("--views", type=int, default=5, help="views of each mesh (default 5)")
+    parser.add_argument("--views", type=int, default=40, help="views of each mesh (default 40)")
     parser.add_argument("--measure", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.measure:

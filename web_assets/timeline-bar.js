@@ -27,6 +27,7 @@ const styles = styled(`
   .mark rect { fill: transparent; }
   .leg { stroke: var(--c2-line); stroke-dasharray: 2 3; }
   .legname { fill: var(--c2-quiet); }
+  .here, .heretext { pointer-events: none; }
   .here { stroke: var(--c2-blue); stroke-width: 2; }
   .heretext { fill: var(--c2-blue-text); font-weight: 600; paint-order: stroke; stroke: var(--c2-card);
     stroke-width: 4px; }
