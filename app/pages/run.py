@@ -160,7 +160,7 @@ def _arm(run: str, members: Sequence[Row], manifest: Mapping[str, Any]) -> ArmVi
         privileged=privileged,
         episodes=len(members),
         rate="" if rate is None else percent(rate.estimate),
-        sentence=sentence(rate, reported, same_episodes=same),
+        sentence=sentence(rate, reported, same_episodes=same, recorded=bool(manifest)),
         figures=tuple(_figures(members)),
         budget=tuple(_budget(run, members)),
     )
@@ -175,12 +175,28 @@ def _reported(variant: str, ranker: str) -> Reported | None:
     return reported_beside([variant], ranker) if ablated or variant == "full" else None
 
 
-def sentence(rate: Interval | None, reported: Reported | None, *, same_episodes: bool) -> str:
-    """What a success rate may be held against, and what follows."""
+def sentence(
+    rate: Interval | None,
+    reported: Reported | None,
+    *,
+    same_episodes: bool,
+    recorded: bool = True,
+) -> str:
+    """What a success rate may be held against, and what follows.
+
+    Args:
+        rate: The rate; None where nothing was scored.
+        reported: The paper's row; None where it has none.
+        same_episodes: Whether that row is of these episodes.
+        recorded: Whether a manifest says which episodes were to be run: without one somebody may
+            have chosen them by how they ended.
+    """
     if rate is None:
         return "No episode of it was scored yet."
     of = f"{round(rate.estimate * rate.n)} of {rate.n}"
     ours = f"{of}, {100 * rate.low:.0f}–{100 * rate.high:.0f} %"
+    if not recorded:
+        return f"{ours}; no manifest says how these were chosen, so nothing follows from the rate."
     value = None if reported is None else reported.value("sr")
     if reported is None or value is None:
         return f"{ours}; the paper reports no such row, so this run stands alone."

@@ -185,7 +185,10 @@ def test_shares_of_the_best_count_what_elected_something():
 
 def test_a_run_without_people_shows_its_models_and_no_page_stands_for_episodes(tmp_path: Path):
     run = judged_run(tmp_path, episodes=1, cycles=2)
-    assert RANKER in client(run).get("/agreement").text
+    alone = client(run).get("/agreement").text
+    assert RANKER in alone
+    assert "Nobody else has answered" in words(alone)
+    assert "all pairs" not in words(alone)
     app = FastAPI()
     source = opened_traces(sorted((run / "traces").glob("*.mcap")), Setting(source="builtin"))
     entries = tuple(type(e)("7", e.label) for e in source.entries)

@@ -83,7 +83,7 @@ def test_the_run_page_tells_the_budget_and_each_block_opens_its_cases(visit: Vis
     assert page.status_code == 200
     said = words(page.text)
     assert "Where 2 episodes went" in said
-    assert "this run stands alone" in said
+    assert "nothing follows from the rate" in said
     counted = 0
     for href, count in re.findall(
         r'href="(cases\?[^"]+)"[^>]*>.*?<b>(\d+)</b>', page.text, re.DOTALL
@@ -134,6 +134,8 @@ def test_the_sentence_says_what_follows_and_no_more():
     assert "of other episodes" in sentence(wilson(26, 100), row, same_episodes=False)
     assert "stands alone" in sentence(wilson(1, 2), None, same_episodes=True)
     assert "scored yet" in sentence(None, row, same_episodes=True)
+    gathered = sentence(wilson(0, 9), row, same_episodes=True, recorded=False)
+    assert "nothing follows from the rate" in gathered
 
 
 def test_what_differs_between_two_manifests_is_named_where_it_lies():
