@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from jaxtyping import Bool, Float32, Int32, Int64
+from jaxtyping import Bool, Float32, Float64, Int, Int32, Int64, Shaped
 
 from c2nav_engine.world.scene import Part, Scene
 
@@ -41,7 +41,7 @@ def lightened(scene: Scene, *, triangles: int = LIGHT_TRIANGLES) -> Scene:
     while len(kept) > triangles:
         cell_of, count = _cells(scene.vertices_m, cell_m)
         kept, corners = _survivors(scene, cell_of)
-        vertices_m = _means(scene.vertices_m, cell_of, count)
+        vertices_m = means(scene.vertices_m, cell_of, count).astype(np.float32)
         colours = None if scene.colours is None else _colours(scene.colours, cell_of, count)
         # Triangles of a surface go with the square of the cell, so this lands near the target.
         cell_m *= max(_LEAST_GROWTH, math.sqrt(len(kept) / triangles))
@@ -109,16 +109,17 @@ def _distinct(corners: Int32[np.ndarray, "n 3"]) -> Bool[np.ndarray, " n"]:
     return (a != b) & (b != c) & (a != c)
 
 
-def _means(
-    values: np.ndarray, cell_of: Int32[np.ndarray, " v"], count: int
-) -> Float32[np.ndarray, "cells k"]:
-    weights = np.bincount(cell_of, minlength=count)
-    sums = [np.bincount(cell_of, column, minlength=count) for column in values.T]
-    return np.stack([total / weights for total in sums], axis=1).astype(np.float32)
+def means(
+    values: Shaped[np.ndarray, "n k"], group: Int[np.ndarray, " n"], count: int
+) -> Float64[np.ndarray, "count k"]:
+    """Mean of the values of each group from 0 to `count`; zeros for a group without any."""
+    weights = np.maximum(np.bincount(group, minlength=count), 1)
+    sums = [np.bincount(group, column, minlength=count) for column in values.T]
+    return np.stack([total / weights for total in sums], axis=1)
 
 
 def _colours(colours: np.ndarray, cell_of: Int32[np.ndarray, " v"], count: int) -> np.ndarray:
-    return _means(colours, cell_of, count).round().astype(np.uint8)
+    return means(colours, cell_of, count).round().astype(np.uint8)
 
 
 def _regions(

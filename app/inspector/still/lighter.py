@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
-from jaxtyping import Float64, UInt8
+from jaxtyping import UInt8
 
-from c2nav_engine.world.lighten import lightened
+from c2nav_engine.world.lighten import lightened, means
 from c2nav_engine.world.scene import Material, Part, Piece, Scene, scene_of
 
 
@@ -130,18 +130,9 @@ def _painted(piece: Piece, grain: UInt8[np.ndarray, "rows columns 4"], plain: Ma
     corners = grain[row, column].astype(np.float64)
     kept = corners[:, :, 3].mean(axis=1) >= 255.0 * piece.material.cutout_alpha
     corners, triangles = corners[kept], piece.triangles[kept]
-    colours = _means(corners.reshape(-1, 4), triangles.reshape(-1), len(piece.vertices_m))
+    colours = means(corners.reshape(-1, 4), triangles.reshape(-1), len(piece.vertices_m))
     colours[:, 3] = 255.0
     if piece.colours is not None:
         colours = colours * piece.colours / 255.0
     painted = colours.round().clip(0, 255).astype(np.uint8)
     return Piece(piece.name, plain, piece.vertices_m, triangles, None, painted)
-
-
-def _means(
-    values: Float64[np.ndarray, "n k"], group: np.ndarray, count: int
-) -> Float64[np.ndarray, "count k"]:
-    """Mean of the values of each group; zeros for a group without any."""
-    sums = [np.bincount(group, column, count) for column in values.T]
-    weights = np.maximum(np.bincount(group, minlength=count), 1)
-    return np.stack([total / weights for total in sums], axis=1)
