@@ -13,7 +13,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from functools import partial
@@ -191,7 +191,7 @@ def lanes_over_one(*, episodes: int = LANES) -> float:
 
 
 @contextmanager
-def _model_server() -> Iterator[str]:
+def _model_server() -> Generator[str]:
     """A server on loopback that thinks for 200 ms and says "A > B > C"."""
 
     class Handler(BaseHTTPRequestHandler):
@@ -209,7 +209,7 @@ def _model_server() -> Iterator[str]:
             self.end_headers()
             self.wfile.write(text)
 
-        def log_message(self, *arguments: object) -> None:
+        def log_request(self, code: object = "-", size: object = "-") -> None:
             """Say nothing."""
 
     server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)

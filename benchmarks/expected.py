@@ -57,9 +57,9 @@ MODELS = {
 class Tally:
     """Queries of one slot while traces are read."""
 
-    texts: list[int] = field(default_factory=list)
-    answers: list[int] = field(default_factory=list)
-    sizes: Counter[tuple[int, int]] = field(default_factory=Counter)
+    texts: list[int] = field(default_factory=list[int])
+    answers: list[int] = field(default_factory=list[int])
+    sizes: Counter[tuple[int, int]] = field(default_factory=Counter[tuple[int, int]])
 
     def add(self, query: Query) -> None:
         """Count one query's words and pictures."""
