@@ -42,9 +42,10 @@ log = logging.getLogger(__name__)
 
 _BLUE = (0x00, 0x72, 0xB2)
 _REST_S = 0.06
-_AT_LATEST_S = 0.2
-"""The shell is drawn once nothing has changed for so long, or at the latest so long after a
-change: the page's own strip and timeline come first, and a scrub is not drawn step by step."""
+_AT_LATEST_S = 0.25
+"""The shell is drawn once nothing has changed for so long and the session is idle, or at the latest
+so long after a change. The page's own strip and timeline come first; where the browser draws the
+map without a GPU, each picture of it takes the cores that the next view is rendered with."""
 
 LEFT_PX = 520
 RIGHT_PX = 300
@@ -166,9 +167,12 @@ class Shell:
     def _settle(self) -> None:
         """Wait until changes have come to rest, and take note of them."""
         latest_s = time.monotonic() + _AT_LATEST_S
-        while self._changed.is_set() and not self._closing:
+        while not self._closing:
             self._changed.clear()
-            self._changed.wait(min(_REST_S, max(0.0, latest_s - time.monotonic())))
+            left_s = latest_s - time.monotonic()
+            changed = self._changed.wait(max(0.0, min(_REST_S, left_s)))
+            if left_s <= 0.0 or not (changed or self._session.busy):
+                return
 
     def _begin_map(self) -> None:
         """Drawing the map takes the page a second the first time: what can be read comes first."""
@@ -179,7 +183,10 @@ class Shell:
     def _draw(self, snapshot: Snapshot) -> None:
         for update in self._updates:
             self._guarded(update, snapshot)
-        if self._mapped.is_set():
+        if not self._mapped.is_set():
+            return
+        # All at once: the browser draws the map anew for every batch that arrives.
+        with self._server.atomic():
             for layer in self._layers:
                 self._guarded(layer.update, snapshot)
 

@@ -62,6 +62,7 @@ class Session:
         self._thumbnails: dict[str, Picture | None] = {}
         self._subscribers: list[Subscriber] = []
         self._closing = threading.Event()
+        self._busy = False
         self._desk = Desk(opened, self.album, Hands(self._background, clock, self.first_page.wait))
         self._behind: Snapshot = self._desk.snapshot
         self._published: Snapshot = self._drawn()
@@ -71,6 +72,11 @@ class Session:
     def snapshot(self) -> Snapshot:
         """The newest published state."""
         return self._published
+
+    @property
+    def busy(self) -> bool:
+        """Whether the worker is at a command, so that another snapshot is likely to follow."""
+        return self._busy
 
     @property
     def scene(self) -> Scene | None:
@@ -135,8 +141,10 @@ class Session:
             except queue.Empty:
                 self._guarded(moving.tick)
             else:
+                self._busy = True
                 self._take(message)
             self._publish()
+            self._busy = False
 
     def _patience_s(self) -> float | None:
         if not self._desk.snapshot.playing:
