@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from app.pages.index import curation
-from app.pages.index.finding import Case, Found, choices
+from app.pages.index.finding import Case, Found
 from app.pages.index.query import SORTS, Query, term, terms, toggled
 from app.pages.library import Library
 from app.pages.page import framed
@@ -110,7 +110,7 @@ def _groups(library: Library, query: Query, found: Found) -> Iterator[tuple[str,
         ],
     )
     for column, field in _COLUMNS:
-        values = choices(library.store, column)
+        values = library.finder.choices(column)
         if len(values) > 1:
             yield (
                 field.capitalize(),

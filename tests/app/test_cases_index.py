@@ -18,7 +18,7 @@ from app.pages.index.store import FILE, Store
 from c2nav_engine.errors import InputError
 from c2nav_engine.experiments.tags.endings import Ending
 from c2nav_engine.experiments.tags.rules import TAGS
-from tests.helpers.cases import failed_task, fake_run, filled, made_rows
+from tests.helpers.cases import VARIANTS, failed_task, fake_run, filled, made_rows
 
 ROWS = made_rows(200)
 Values = dict[str, Value]
@@ -183,6 +183,16 @@ def test_marks_views_and_sets_outlive_the_rows_they_speak_of(tmp_path: Path):
     assert curation.sets(store) == []
     with pytest.raises(InputError, match="a set of this folder"):
         curation.members(store, "failures")
+
+
+def test_choices_are_those_of_the_index_as_it_stands(tmp_path: Path):
+    rows = made_rows(9)
+    finder = Finder(filled(tmp_path, rows[:6]))
+    assert finder.choices("variant") == [(name, 2) for name in sorted(VARIANTS)]
+    finder.store.put_all((row, 1, 1) for row in rows[6:])
+    assert finder.choices("variant") == [(name, 3) for name in sorted(VARIANTS)]
+    assert sum(count for _, count in finder.choices("run")) == 9
+    finder.store.close()
 
 
 def test_names_that_cannot_be_kept_are_refused(store: Store):

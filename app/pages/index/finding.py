@@ -78,6 +78,16 @@ class Finder:
     def __init__(self, store: Store) -> None:
         self.store = store
         self._counter = Counter(store)
+        self._choices: dict[str, list[tuple[str, int]]] = {}
+        self._version: object = None
+
+    def choices(self, column: str) -> list[tuple[str, int]]:
+        """See the function of that name; counted again only when the index has changed."""
+        if self._version != self.store.version:
+            self._version, self._choices = self.store.version, {}
+        if column not in self._choices:
+            self._choices[column] = choices(self.store, column)
+        return self._choices[column]
 
     def find(self, query: Query, *, page: int = 1) -> Found:
         """A page of a query, else its last one; raises `InputError` for a query that is none."""
