@@ -10,6 +10,7 @@ from textwrap import fill
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn
 
+from app.commands.scenes import short_id
 from c2nav_engine.episodes.episode import Episode
 from c2nav_engine.episodes.profile import Profile
 from c2nav_engine.runner.source import BUILTIN, Source
@@ -196,7 +197,7 @@ def _print_missing(found: CheckedSource, console: Console) -> None:
     scenes = "1 scene is" if len(missing) == 1 else f"{len(missing)} scenes are"
     _line(console, f"{scenes} missing {where}; blocked: {blocked} of {len(found.chosen)} episodes")
     for scene_id, ids in sorted(missing.items()):
-        _line(console, f"  {_short(scene_id)}  {len(ids)}: {_ids(ids)}", hanging=6)
+        _line(console, f"  {short_id(scene_id)}  {len(ids)}: {_ids(ids)}", hanging=6)
     if any(scene_id.startswith("mp3d/") for scene_id in missing):
         _line(
             console,
@@ -208,12 +209,6 @@ def _print_missing(found: CheckedSource, console: Console) -> None:
         "Then add --scenes DIR; a scan lies at DIR/mp3d/SCAN/SCAN.glb, its SCAN.navmesh beside it. "
         "The source `builtin` needs no scans.",
     )
-
-
-def _short(scene_id: str) -> str:
-    """A scan's name for an id that says it twice."""
-    stem = scene_id.rsplit("/", 1)[-1].rsplit(".", 1)[0]
-    return stem if scene_id == f"mp3d/{stem}/{stem}.glb" else scene_id
 
 
 def _ids(ids: Sequence[str]) -> str:

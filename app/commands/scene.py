@@ -14,7 +14,7 @@ from rich.table import Table
 from app.commands.options import JsonOpt, ScenesOpt
 from app.commands.output import print_json
 from app.commands.preparing import prepare_all, prepared_json
-from app.commands.scenes import named_scene, scene_source
+from app.commands.scenes import named_scene, scene_source, short_id
 from c2nav_engine.episodes.profile import Profile, profile_named
 from c2nav_engine.errors import UsageError
 from c2nav_engine.world.navmesh import profile_note, query_pairs, read_navmesh
@@ -71,7 +71,7 @@ def prepare(
         table.add_column(name, justify="left" if name in {"scene", "floor"} else "right")
     for row in rows:
         numbers = (f"{row.triangles:,}", f"{row.shown_triangles:,}", row.floor)
-        table.add_row(row.scene_id, *numbers, f"{row.cache_mb:.0f}", f"{row.seconds:.1f}")
+        table.add_row(short_id(row.scene_id), *numbers, f"{row.cache_mb:.0f}", f"{row.seconds:.1f}")
     console = Console(highlight=False)
     console.print(table)
     for row in rows:
@@ -158,11 +158,12 @@ def _told(value: object) -> str:
     if isinstance(value, list):
         items = [_told(item) for item in cast("list[object]", value)]
         more = f" and {len(items) - MOST_NAMES} more" if len(items) > MOST_NAMES else ""
-        return ("; " if "," in "".join(items) else ", ").join(items[:MOST_NAMES]) + more
+        listed = ("; " if "," in "".join(items) else ", ").join(items[:MOST_NAMES]) + more
+        return listed or "none"
     if isinstance(value, dict):
         pairs = cast("dict[str, object]", value).items()
-        return ", ".join(f"{name} {_told(item)}" for name, item in pairs)
-    return f"{value:.2f}" if isinstance(value, float) else str(value)
+        return ", ".join(f"{name} {_told(item)}" for name, item in pairs) or "none"
+    return f"{value:.2f}" if isinstance(value, float) else str(value) or "none"
 
 
 scene = {"info": info, "prepare": prepare, "query": query}

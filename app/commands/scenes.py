@@ -39,6 +39,12 @@ def scene_source(scenes: Path | None) -> Source:
     return Source(EpisodeFile("", (), "", ""), scenes, {}, "")
 
 
+def short_id(scene_id: str) -> str:
+    """A scan's name for an id that says it twice."""
+    stem = scene_id.rsplit("/", 1)[-1].rsplit(".", 1)[0]
+    return stem if scene_id == f"mp3d/{stem}/{stem}.glb" else scene_id
+
+
 def named_scene(name: str, scenes: Path | None) -> tuple[str, Path | None]:
     """The scene id and the folder below which it resolves; raises `SceneError` for neither."""
     if name.startswith(f"{BUILTIN}/"):

@@ -30,7 +30,8 @@ class World:
     Attributes:
         scene: The mesh.
         surface: The floor for the profile.
-        note: What a record should say about that floor; "" when it fits the profile.
+        note: What a record should say about that floor: another body's, off-mesh links that were
+            left out; "" for nothing.
     """
 
     def __init__(
@@ -115,7 +116,7 @@ class Worlds:
             from c2nav_engine.world.navmesh import profile_note, read_navmesh
 
             mesh = read_navmesh(path.with_suffix(".navmesh"))
-            return mesh, profile_note(mesh, profile)
+            return mesh, "; ".join(filter(None, (profile_note(mesh, profile), *mesh.notes)))
         return built_surface(scene, profile, self._config.cache or cache_folder()), ""
 
 

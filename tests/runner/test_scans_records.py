@@ -17,6 +17,7 @@ from c2nav_engine.runner.opening import OpenSpec, Workbench
 from c2nav_engine.runner.recording import TraceWriter
 from c2nav_engine.runner.source import Source, open_source
 from c2nav_engine.runner.worlds import Worlds, WorldsConfig
+from tests.helpers.navmesh_bytes import MeshSpec, TileSpec, write_navmesh
 from tests.helpers.scans import scans, write_scans
 
 EYES = Pinhole(32, 32, math.radians(90.0))
@@ -71,6 +72,16 @@ def test_a_navmesh_beside_the_scan_is_used_and_named(headers):
 
 def test_without_one_a_floor_is_built_and_the_record_says_so(headers):
     assert headers(VLNCE, "2").surface == "built"
+
+
+def test_off_mesh_links_that_were_left_out_are_noted(tmp_path):
+    source = open_source(str(write_scans(tmp_path)), scenes=tmp_path)
+    scan = scans()[0]
+    tile = TileSpec([list(polygon) for polygon in scan.floor], connections=2)
+    beside = (tmp_path / scan.scene_id).with_suffix(".navmesh")
+    beside.write_bytes(write_navmesh(MeshSpec([tile], tile_size_m=16.0)))
+    world = Worlds(source, WorldsConfig(VLNCE, cache=tmp_path)).of(scan.scene_id)
+    assert "2 off-mesh connections are ignored" in world.note
 
 
 def test_another_body_than_habitats_is_noted(headers):
