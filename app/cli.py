@@ -6,6 +6,7 @@ input, with one message on standard error; 130 interrupted, with everything fini
 
 from __future__ import annotations
 
+import gc
 import importlib
 import sys
 from collections.abc import Callable, Sequence
@@ -87,4 +88,10 @@ def _code(result: object) -> int:
 
 
 def _loaded(name: str) -> Command | dict[str, Command]:
-    return getattr(importlib.import_module(f"app.commands.{name}"), name)
+    # What modules make stays: looking for garbage in it takes a tenth of the time they load in.
+    gc.disable()
+    try:
+        return getattr(importlib.import_module(f"app.commands.{name}"), name)
+    finally:
+        gc.freeze()
+        gc.enable()

@@ -130,7 +130,7 @@ def serve(
     """
     listener = listen(host, port)
     address = Address(host, listener.getsockname()[1])
-    session = Session(opened, first_page=FirstPage(asked_within_s=2.0, stands_within_s=8.0))
+    session = Session(opened, first_page=FirstPage(asked_within_s=2.0, stands_within_s=30.0))
     shell = Shell(session)
     session.start()
     try:
