@@ -12,10 +12,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from app.reviews.events import Event, Kind, Said
+from app.reviews.events import Event, Kind
 from app.reviews.state import Opinion, last_to_redo, last_to_undo, opinions, standing
 from app.reviews.store import FILE, Store
 from app.reviews.tags import read_tags, write_tags
+from c2nav_engine.contract.outcome import Said
 
 _NOTHING: Mapping[str, str] = {}
 

@@ -14,11 +14,8 @@ from typing import Any, cast
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from c2nav_engine.contract.outcome import Abstention, Ordering, Tie
+from c2nav_engine.contract.outcome import Abstention, Ordering, Said, Tie
 from c2nav_engine.errors import UsageError
-
-Said = Ordering | Tie | Abstention
-"""What a person can answer to a question: a ranking, a tie at the top, or none."""
 
 
 class Kind(enum.StrEnum):

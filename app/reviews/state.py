@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
-from app.reviews.events import VERDICTS, Event, Kind, Said
+from app.reviews.events import VERDICTS, Event, Kind
+from c2nav_engine.contract.outcome import Said
 
 Place = tuple[str, str, int]
 """Author, trace digest, decision."""

@@ -6,11 +6,11 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.reviews.events import Event, Kind, Said
+from app.reviews.events import Event, Kind
 from app.reviews.questions import question_id
 from app.reviews.queues import Place
 from app.reviews.study import Person, Study
-from c2nav_engine.contract.outcome import Abstention, Ordering, Tie
+from c2nav_engine.contract.outcome import Abstention, Said, ranking_of
 from c2nav_engine.contract.prompt import Prompt
 from c2nav_engine.errors import UsageError
 
@@ -111,7 +111,5 @@ def said_by(tiers: Sequence[Sequence[str]], prompt: Prompt) -> Said:
     if not all(tiers) or len(set(named)) < len(named) or not set(named) <= keys.keys():
         message = f"expected tiers of distinct labels among {', '.join(keys)}; came {named}"
         raise UsageError(message)
-    found = [tuple(keys[label] for label in tier) for tier in tiers]
-    rest = tuple(key for label, key in keys.items() if label not in named)
-    ranked = (*found, rest) if rest else tuple(found)
-    return Ordering(ranked) if len(ranked[0]) == 1 else Tie(ranked)
+    ranked = tuple(tuple(keys[label] for label in tier) for tier in tiers)
+    return ranking_of(ranked, keys.values())

@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from c2nav_engine.contract.outcome import Abstention, Ordering, Tie
-
-Said = Ordering | Tie | Abstention
-"""What a person can answer to a question."""
+from c2nav_engine.contract.outcome import Said
 
 _NOTHING: Mapping[str, str] = {}
 

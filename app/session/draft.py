@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from c2nav_engine.contract.outcome import Abstention, Key, Ordering, Tie
+from c2nav_engine.contract.outcome import Abstention, Key, Said, ranking_of
 
 NONE_OF_THESE = "none of these"
 """Reason of the abstention when a person rejects every alternative."""
@@ -72,10 +72,8 @@ def arranged(tiers: tuple[tuple[Key, ...], ...]) -> Draft:
     return Draft(tuple(tier for tier in tiers if tier))
 
 
-def outcome_of(draft: Draft, offered: tuple[Key, ...]) -> Ordering | Tie | Abstention:
+def outcome_of(draft: Draft, offered: tuple[Key, ...]) -> Said:
     """What the draft commits; keys that were left out share the last rank."""
     if draft.none or not draft.tiers:
         return Abstention(NONE_OF_THESE)
-    rest = tuple(key for key in offered if key not in draft.keys)
-    tiers = (*draft.tiers, rest) if rest else draft.tiers
-    return Ordering(tiers) if len(tiers[0]) == 1 else Tie(tiers)
+    return ranking_of(draft.tiers, offered)

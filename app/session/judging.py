@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from app.session.book import Book, Opinion, Said
+from app.session.book import Book, Opinion
 from app.session.snapshot import Judgement
 from app.session.track import Track
-from c2nav_engine.contract.outcome import Key, Ordering
+from c2nav_engine.contract.outcome import Key, Ordering, Said
 
 VERDICTS = ("agree", "acceptable", "wrong", "cannot-tell")
 

@@ -21,6 +21,7 @@ from c2nav_engine.contract.outcome import (
     Tie,
     TransportFailure,
     Truncated,
+    ranking_of,
 )
 from c2nav_engine.contract.question import Orders, Question
 from c2nav_engine.errors import InternalError
@@ -72,8 +73,7 @@ def borda(keys: Sequence[Key], outcomes: Sequence[Answered]) -> Answered:
     orderings = [outcome for outcome in outcomes if isinstance(outcome, Ordering)]
     if len(orderings) < 2:
         return Abstention(TOO_FEW_ANSWERS)
-    tiers = _tiers(keys, orderings)
-    return Ordering(tiers) if len(tiers[0]) == 1 else Tie(tiers)
+    return ranking_of(_tiers(keys, orderings))
 
 
 def points(ordering: Ordering) -> dict[Key, Fraction]:

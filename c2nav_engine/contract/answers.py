@@ -30,7 +30,7 @@ from c2nav_engine.contract.outcome import (
     Key,
     Ordering,
     Refused,
-    Tie,
+    ranking_of,
 )
 from c2nav_engine.contract.presentation import ORDINAL_FORMS
 from c2nav_engine.contract.prompt import Prompt
@@ -162,7 +162,7 @@ def _sequence(sequence: str, labels: _Labels) -> Answered:
     if missing:
         return Invalid(f"missing label {missing[0].upper()}")
     keyed = tuple(tuple(labels[label] for label in tier) for tier in tiers)
-    return Ordering(keyed) if len(keyed[0]) == 1 else Tie(keyed)
+    return ranking_of(keyed)
 
 
 def _normal(text: str) -> str:

@@ -6,6 +6,7 @@ Everything else it may do is a value too, so that no answer can be mistaken for 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 Key = str
@@ -110,3 +111,13 @@ class Cardinal:
 
 Outcome = Ordering | Tie | Abstention | Invalid | Refused | Truncated | Empty | TransportFailure
 Answered = Outcome | Cardinal
+Said = Ordering | Tie | Abstention
+"""What a person can answer to a question: a ranking, a tie at the top, or none."""
+
+
+def ranking_of(tiers: tuple[tuple[Key, ...], ...], offered: Iterable[Key] = ()) -> Ordering | Tie:
+    """Tiers from best to worst as an outcome; what is `offered` and left out is tied behind."""
+    named = {key for tier in tiers for key in tier}
+    rest = tuple(key for key in offered if key not in named)
+    whole = (*tiers, rest) if rest else tiers
+    return Ordering(whole) if len(whole[0]) == 1 else Tie(whole)
