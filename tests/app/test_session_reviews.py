@@ -218,6 +218,7 @@ HARMLESS = {
     "consent_to",
     "no_scene",
     "scene_serial",
+    "overlays",
 }
 """Parts of a snapshot that know nothing of what was answered, or only what the person did."""
 
