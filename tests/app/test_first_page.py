@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 from fastapi import FastAPI
@@ -12,6 +13,7 @@ from app.gateway.feed import Feed
 from app.session.first_page import FirstPage
 from app.session.worker import Session
 from c2nav_engine.errors import SceneError
+from c2nav_engine.world.surface import Surface
 from tests.helpers import stage
 
 NEVER_S = 60.0
@@ -54,15 +56,18 @@ def test_nobody_is_waited_for_without_end(come: Callable[[FirstPage], None]):
     assert begun(first).wait(NEVER_S)
 
 
-def test_a_scene_is_loaded_after_the_page_that_says_it_stands():
+def test_suspects_are_looked_for_after_the_page_that_says_it_stands():
     loaded = threading.Event()
 
-    def load() -> None:
+    def load() -> Surface:
         loaded.set()
-        raise SceneError("expected a scene, came none")
+        raise SceneError("expected a floor, came none")
 
     first = FirstPage(asked_within_s=NEVER_S, stands_within_s=NEVER_S)
-    session = Session(stage.opened_recording(cycles=2, scene=load), first_page=first)
+    recording = stage.opened_recording(cycles=2)
+    opened = replace(recording, open=lambda c: replace(recording.open(c), surface=load))
+    session = Session(opened, first_page=first)
+    session.start()
     app = FastAPI()
     app.include_router(api(session, Feed(session)))
     assert not loaded.wait(AT_ONCE_S)
