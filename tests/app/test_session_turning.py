@@ -19,9 +19,8 @@ from app.session.worker import Session
 from c2nav_engine.experiments.spec import Setting
 from c2nav_engine.experiments.turning.flips import TURNING, Budget
 from tests.helpers import stage
-from tests.helpers.planted import decision_of, flawless
+from tests.helpers.planted import SHORT, decision_of, flawless
 
-SHORT = "8"
 PATIENCE_S = 120.0
 
 
