@@ -59,6 +59,7 @@ def _agreement_json(row: Agreement) -> dict[str, object]:
         "b": row.b,
         "slot": row.slot,
         "questions": row.questions,
+        "episodes": row.episodes,
         "top1": _interval_json(row.top1),
         "chance": row.chance,
         "tau": _interval_json(row.tau),

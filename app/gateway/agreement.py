@@ -199,8 +199,7 @@ def _shown(desk: AgreementDesk, asked: Asked) -> Shown:
     agreement, orders = desk.rows()
     slots = sorted({answer.slot for answer in answers.given})
     slot = asked.slot if asked.slot in slots else ALL
-    # A pair that was asked about one slot alone has no row over all of them.
-    here = [row for row in agreement if row.slot == slot] or agreement
+    here = _of_slot(agreement, slot)
     chosen = _chosen(here, (asked.kind, asked.a, asked.b))
     raters = {answer.rater for answer in answers.given}
     truth, privileged = _privileged(desk, answers, wanted=asked.best)
@@ -227,6 +226,16 @@ def _shown(desk: AgreementDesk, asked: Asked) -> Shown:
         ),
         privileged=privileged,
     )
+
+
+def _of_slot(rows: Sequence[Agreement], slot: str) -> list[Agreement]:
+    """One row a pair; one that was asked about a single slot has no other row for all of them."""
+    several = {(row.kind, row.a, row.b) for row in rows if row.slot == ALL}
+    return [
+        row
+        for row in rows
+        if row.slot == slot or (slot == ALL and (row.kind, row.a, row.b) not in several)
+    ]
 
 
 def _chosen(rows: Sequence[Agreement], pair: tuple[str, str, str]) -> tuple[str, str, str]:
@@ -260,9 +269,10 @@ def _pair_row(row: Agreement, chosen: tuple[str, str, str]) -> PairRow:
         a=row.a,
         b=row.b,
         questions=row.questions,
-        top1=_rate(row.top1, row.chance),
-        tau=_signed(row.tau),
-        alpha=_signed(row.alpha),
+        episodes=row.episodes,
+        top1=_rate(row.top1, row.chance, drawn=row.episodes > 1),
+        tau=_signed(row.tau, drawn=row.episodes > 1),
+        alpha=_signed(row.alpha, drawn=row.episodes > 1),
         chosen=(row.kind, row.a, row.b) == chosen,
     )
 
@@ -288,17 +298,21 @@ def _what(rater: Rater) -> str:
     return "person" if rater.human else ""
 
 
-def _rate(interval: Interval | None, chance: float | None = None) -> Bar | None:
-    """A share of one, in percent."""
+def _rate(
+    interval: Interval | None, chance: float | None = None, *, drawn: bool = True
+) -> Bar | None:
+    """A share of one, in percent; its ends are left out where nothing could be `drawn` again."""
     if interval is None or interval.n == 0 or math.isnan(interval.estimate):
         return None
-    words = f"{100 * interval.estimate:.0f} ({100 * interval.low:.0f}–{100 * interval.high:.0f})"
+    words = f"{100 * interval.estimate:.0f}"
+    if drawn:
+        words += f" ({100 * interval.low:.0f}–{100 * interval.high:.0f})"
     beside = "" if chance is None else f"chance {100 * chance:.0f}"
     return Bar(words, interval.low, interval.estimate, interval.high, chance, beside)
 
 
-def _signed(interval: Interval | None) -> Bar | None:
-    """A figure from −1 to 1, held against 0."""
+def _signed(interval: Interval | None, *, drawn: bool = True) -> Bar | None:
+    """A figure from −1 to 1, held against 0; its ends as in `_rate`."""
     if interval is None or interval.n == 0 or math.isnan(interval.estimate):
         return None
     middle, low, high = (
@@ -307,7 +321,7 @@ def _signed(interval: Interval | None) -> Bar | None:
         for value in (interval.estimate, interval.low, interval.high)
     )
     ends = ((1 + value) / 2 for value in (interval.low, interval.estimate, interval.high))
-    return Bar(f"{middle} ({low} … {high})", *ends, mark=0.5)
+    return Bar(f"{middle} ({low} … {high})" if drawn else middle, *ends, mark=0.5)
 
 
 def _confusion(row: Agreement) -> Confusion:

@@ -52,6 +52,7 @@ class PairRow:
         a: First rater; "" for all pairs of the kind.
         b: Second one.
         questions: Questions that both answered.
+        episodes: Episodes that they are of.
         top1: Share of equal winners; the mark is chance.
         tau: Mean Kendall's τ-b.
         alpha: Krippendorff's α.
@@ -63,6 +64,7 @@ class PairRow:
     a: str
     b: str
     questions: int
+    episodes: int
     top1: Bar | None
     tau: Bar | None
     alpha: Bar | None

@@ -26,11 +26,13 @@ class Arm:
         run: Run folder.
         variant: Preset.
         ranker: Name with model id.
+        privileged: Whether it knows the truth.
     """
 
     run: str
     variant: str
     ranker: str
+    privileged: bool = False
 
     @property
     def name(self) -> str:
@@ -56,10 +58,10 @@ class Matrix:
 def arms(library: Library) -> list[Arm]:
     """Every configuration in the index that left traces."""
     found = library.store.tuples(
-        "select distinct run, variant, ranker from episodes where trace_sha256 <> '' "
-        "order by run, variant, ranker"
+        "select run, variant, ranker, max(privileged) from episodes where trace_sha256 <> '' "
+        "group by run, variant, ranker order by run, variant, ranker"
     )
-    return [Arm(*row) for row in found]
+    return [Arm(run, variant, ranker, bool(truth)) for run, variant, ranker, truth in found]
 
 
 def arm_named(library: Library, name: str) -> Arm:

@@ -48,6 +48,7 @@ class Agreement:
         b: Second rater.
         slot: Decision slot, or "all".
         questions: Questions that both answered, electing or not, over all pairs.
+        episodes: Episodes that they are of: what intervals are drawn over.
         top1: Share of equal winners where both elected one; interval over episodes.
         chance: What two uniform choices would give there: mean 1/m over offered alternatives.
         tau: Mean Kendall's τ-b where both ranked.
@@ -61,6 +62,7 @@ class Agreement:
     b: str
     slot: str
     questions: int
+    episodes: int
     top1: Interval | None
     chance: float | None
     tau: Interval | None
@@ -162,6 +164,7 @@ def _row(names: tuple[str, str, str], slot: str, pairs: Sequence[Pair], seed: in
         b=b,
         slot=slot,
         questions=len(pairs),
+        episodes=len({pair.a.episode for pair in pairs}),
         top1=_mean(elected, lambda pair: float(pair.a.winner == pair.b.winner), seed),
         chance=fmean(1.0 / len(pair.a.keys) for pair in elected) if elected else None,
         tau=_mean(pairs, _tau, seed),

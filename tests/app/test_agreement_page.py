@@ -57,7 +57,7 @@ def judged(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def client(run: Path) -> TestClient:
     app = FastAPI()
     traces = sorted((run / "traces").glob("*.mcap"))
-    mount_agreement(app, opened_traces(traces, Setting(source="builtin")), menu=MENU)
+    mount_agreement(app, opened_traces(traces, Setting(source="builtin")), menu=tuple(MENU))
     return TestClient(app)
 
 
@@ -78,7 +78,7 @@ def test_the_page_shows_the_figures_of_the_command(judged: Path):
                 f"chance {100 * row.chance:.0f}"
             )
             name = f"{row.a} · {row.b}" if row.a else "all pairs"
-            assert f"{name} {row.questions} {figure}" in text
+            assert f"{name} {row.questions} {row.episodes} episodes {figure}" in text
     for effect in order_effects(answers):
         assert effect.rater.name in text
     assert "People among themselves" in text
@@ -160,6 +160,20 @@ def test_the_best_alternative_stays_covered_until_everybody_has_answered(
     assert "◆ geodesically best, %" in words(page.get("/agreement?best=1").text)
 
 
+def test_a_pair_of_one_slot_and_one_episode_stands_under_all_slots_without_an_interval(
+    tmp_path: Path,
+):
+    run = judged_run(tmp_path, episodes=1, cycles=1)
+    study, ((ann, _),) = study_with(run, "ann", per_slot=1)
+    judge(study, ann, most=1)
+    (pair,) = [row for row in agreements(read_answers([run])) if row.kind == "human-model"]
+    assert (pair.questions, pair.episodes) == (1, 1)
+    assert pair.slot != "all"
+    assert pair.top1 is not None
+    share = f"{100 * pair.top1.estimate:.0f} chance"
+    assert f"P1 · {RANKER} 1 1 episode {share}" in words(client(run).get("/agreement").text)
+
+
 def test_without_a_floor_it_says_what_to_do(judged: Path):
     text = words(client(judged).get("/agreement?best=1").text)
     assert "◆ geodesically best, %" not in text
@@ -193,7 +207,7 @@ def test_a_run_without_people_shows_its_models_and_no_page_stands_for_episodes(t
     source = opened_traces(sorted((run / "traces").glob("*.mcap")), Setting(source="builtin"))
     entries = tuple(type(e)("7", e.label) for e in source.entries)
     named = type(source)(source.title, entries, source.first, source.open)
-    mount_agreement(app, named, menu=MENU)
+    mount_agreement(app, named, menu=tuple(MENU))
     assert TestClient(app).get("/agreement").status_code == 404
 
 

@@ -201,7 +201,8 @@ def test_reevaluations_beside_a_run_are_raters_of_its_page(run: Path, capsys):
         if {row.a, row.b} == {"letter A", RANKER} and row.slot == "seeing"
     )
     assert pair.top1 is not None
-    words = f"{100 * pair.top1.estimate:.0f} ({100 * pair.top1.low:.0f}–"
+    assert pair.chance is not None
+    words = f"{100 * pair.top1.estimate:.0f} <small>chance {100 * pair.chance:.0f}"
     asked = {"slot": "seeing", "kind": "model-model", "a": pair.a, "b": pair.b}
     assert words in TestClient(app).get("/agreement", params=asked).text
     assert {pair.a, pair.b} <= {row["rater"] for row in told(capsys, run, again)["orders"]}

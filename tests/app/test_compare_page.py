@@ -11,15 +11,16 @@ import pytest
 from starlette.testclient import TestClient
 
 from app.gateway.runs import RunPages, runs_application
+from app.pages.compare import compare_page
 from app.pages.index.columns import Row
 from app.pages.library import Library
-from app.pages.matrix import Arm, matrix_of
+from app.pages.matrix import Arm, arms, matrix_of
 from app.pages.page import MENU
 from app.pages.pair import worded
 from c2nav_engine.contract.outcome import Ordering
 from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.runner.exchange import Exchange
-from tests.helpers.cases import filled
+from tests.helpers.cases import VARIANTS, filled, made_rows
 from tests.helpers.exchanges import FakeEpisode, fake_episode, write_episode
 
 
@@ -122,6 +123,26 @@ def test_each_shared_task_stands_in_one_cell_and_the_test_counts_them(tmp_path: 
     assert (matrix.test.both, matrix.test.discordant, matrix.test.p) == (2, 2, 1.0)
     lonely = matrix_of(library, Arm("run", "full", "m"), Arm("run", "none", "m"))
     assert lonely.test is None
+    library.close()
+
+
+def test_who_knows_the_truth_is_marked_beside_a_model(tmp_path: Path):
+    made = made_rows(4)
+    rows = [
+        Row(row.path, {**row.values, "privileged": int(row.values["variant"] == "full")})
+        for row in made
+    ]
+    filled(tmp_path, rows).close()
+    library = Library(tmp_path)
+    told = {arm.variant: arm.privileged for arm in arms(library)}
+    assert told == {name: name == "full" for name in VARIANTS}
+    full, base = (
+        next(arm for arm in arms(library) if arm.privileged is truth) for truth in (True, False)
+    )
+    page = compare_page(library, full.name, base.name, menu=tuple(MENU))
+    assert "knows the truth" in page
+    assert f"◆ {full.run}" in page
+    assert "knows the truth" not in compare_page(library, base.name, base.name, menu=tuple(MENU))
     library.close()
 
 
