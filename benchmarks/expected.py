@@ -27,8 +27,8 @@ from c2nav_engine.experiments.expected import (
     SlotMeans,
     VariantMeans,
 )
+from c2nav_engine.experiments.report.behaviour import trace_of
 from c2nav_engine.experiments.report.reading import Run, read_run
-from c2nav_engine.experiments.spec import trace_name
 from c2nav_engine.navigator.requests import Ask, Seen
 from c2nav_engine.runner.exchange import Exchange
 from c2nav_engine.runner.recorded import open_trace
@@ -111,12 +111,12 @@ def variant_means(
     run: Run, variant: str, tallies: defaultdict[str, Tally], *, core_s_a_view: float
 ) -> VariantMeans:
     rows = [row for row in run.rows if row["variant"] == variant]
+    presets = [name for name in run.configs if run.configs[name] == run.configs[variant]]
     queries: Counter[str] = Counter()
     views: list[int] = []
     megabytes: list[float] = []
     for row in rows:
-        name = trace_name(str(row["episode_id"]), variant, int(row["seed"] or 0))
-        path = run.folder / "traces" / f"{name}.mcap"
+        path = trace_of(row, presets, run.folder)
         with open_trace(path) as trace:
             exchanges = list(trace.exchanges())
         for exchange in exchanges:
