@@ -96,8 +96,8 @@ class RankStrip extends HTMLElement {
       return;
     }
     const focused = this.shadowRoot.activeElement?.dataset.key;
-    // Pictures that nobody waits for any more must not stand in line before those in view.
-    for (const one of this.shadowRoot.querySelectorAll("img")) if (!one.complete) one.removeAttribute("src");
+    const there = [...this.shadowRoot.querySelectorAll("img")].filter((one) => one.naturalWidth > 0);
+    this.known = new Map(there.map((one) => [`${one.className} ${one.dataset.sha}`, one]));
     const parts = [this.chips(decision), this.context(decision)];
     if (decision.cards.length) {
       const cards = h("div", { class: "cards", role: "list" });
@@ -106,7 +106,31 @@ class RankStrip extends HTMLElement {
     } else parts.push(h("p", { class: "empty" }, "Nothing was offered"));
     if (decision.asked) parts.push(this.rail(decision, state));
     this.shadowRoot.replaceChildren(...parts.filter(Boolean));
+    this.fill(decision.number);
     if (focused) this.shadowRoot.querySelector(`[data-key="${CSS.escape(focused)}"]`)?.focus();
+  }
+
+  /** The picture where it stands here already, else a new one, still empty. */
+  picture(sha, attributes) {
+    const key = `${attributes.class ?? ""} ${sha}`;
+    const known = this.known.get(key);
+    this.known.delete(key);
+    if (known) known.alt = attributes.alt;
+    return known ?? h("img", { "data-sha": sha, ...attributes });
+  }
+
+  /** Fetch what is missing. While a person scrubs, decisions that are passed must not stand in line
+   *  before the one in view: each waits for a moment whether it stays. */
+  fill(number) {
+    const now = performance.now();
+    const passing = number !== this.number && now - this.drawn < 80;
+    [this.number, this.drawn] = [number, now];
+    clearTimeout(this.filling);
+    const fetch = () => {
+      for (const one of this.shadowRoot.querySelectorAll("img:not([src])")) one.src = image(one.dataset.sha);
+    };
+    if (passing) this.filling = setTimeout(fetch, 40);
+    else fetch();
   }
 
   /** Say once that what is in view stands here, pictures included. */
@@ -139,7 +163,7 @@ class RankStrip extends HTMLElement {
         h(
           "figure",
           { class: index > 0 && decision.context.length > 2 ? "small" : null },
-          h("img", { src: image(sha), alt: words }),
+          this.picture(sha, { alt: words }),
           words,
         ),
       ),
@@ -166,7 +190,7 @@ class RankStrip extends HTMLElement {
     });
     node.append(h("span", { class: "letter" }, card.letter || "–"));
     if (card.ordinal) node.append(h("span", { class: "rank" }, card.ordinal));
-    if (card.sha) node.append(h("img", { class: "picture", src: image(card.sha), alt: "", draggable: "false" }));
+    if (card.sha) node.append(this.picture(card.sha, { class: "picture", alt: "", draggable: "false" }));
     if (card.mark)
       node.append(h("span", { class: "pin", style: `left:${100 * card.mark[0]}%;--row:${card.mark[1]}`, title: "the asked place" }));
     node.append(this.caption(card, decision));
