@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, cast
 
 from app.pages.index.finding import health, rows
 from app.pages.index.query import term
 from app.pages.library import Library, Tasks
 from app.pages.page import framed
+from app.pages.turned import Turned, turned_of
 from c2nav_engine.errors import InputError
 from c2nav_engine.experiments.columns import Row
 from c2nav_engine.experiments.estimates import figure
@@ -77,6 +79,7 @@ class ArmView:
         sentence: What it may be held against.
         figures: Further figures.
         budget: Every episode once.
+        turned: What one other answer would have made of the failures; None where none was tried.
     """
 
     variant: str
@@ -87,6 +90,7 @@ class ArmView:
     sentence: str
     figures: tuple[Shown, ...]
     budget: tuple[Block, ...]
+    turned: Turned | None
 
 
 def run_page(library: Library, run: str, *, against: str = "", menu: Sequence[str]) -> str:
@@ -118,7 +122,7 @@ def run_page(library: Library, run: str, *, against: str = "", menu: Sequence[st
         tasks=library.tasks(run),
         unread=library.progress,
         facts=_facts(manifest),
-        arms=[_arm(run, members, manifest) for members in _arms(found)],
+        arms=[_arm(library.root, run, members, manifest) for members in _arms(found)],
         differs=differences(manifest, library.manifest(against))
         if against
         else from_presets(manifest),
@@ -147,7 +151,7 @@ def _arms(found: Sequence[Row]) -> Iterator[list[Row]]:
     )
 
 
-def _arm(run: str, members: Sequence[Row], manifest: Mapping[str, Any]) -> ArmView:
+def _arm(root: Path, run: str, members: Sequence[Row], manifest: Mapping[str, Any]) -> ArmView:
     first = members[0]
     variant, ranker = str(first["variant"]), str(first["ranker"])
     privileged = any(row["privileged"] for row in members)
@@ -163,6 +167,7 @@ def _arm(run: str, members: Sequence[Row], manifest: Mapping[str, Any]) -> ArmVi
         sentence=sentence(rate, reported, same_episodes=same, recorded=bool(manifest)),
         figures=tuple(_figures(members)),
         budget=tuple(_budget(run, members)),
+        turned=turned_of(root / run, members),
     )
 
 
