@@ -59,7 +59,7 @@ class FigureDialog {
     const body = answer.ok ? await answer.blob() : await answer.json();
     if (this.asked !== asked) return;
     this.dialog.removeAttribute("aria-busy");
-    this.show(answer.ok ? body : null, answer.ok ? "" : `✕ ${body.detail}`);
+    this.show(answer.ok ? body : null, answer.ok ? "" : body.detail);
   }
 
   show(body, fault) {
@@ -67,7 +67,7 @@ class FigureDialog {
     this.picture.hidden = !body;
     if (body) this.picture.src = URL.createObjectURL(body);
     this.picture.alt = `${KINDS[this.kind.value]}, decisions ${this.decisions.value}`;
-    this.words.textContent = fault;
+    this.words.replaceChildren(...(fault ? [h("b", { class: "c2-fault" }, "✕ "), fault] : []));
     const link = (label, file, more) =>
       h("a", { class: "c2-link", href: this.address(file, more), download: `${this.kind.value}.${file}` }, label);
     const files = [link("Save as PDF", "pdf"), link("Save as SVG", "svg")];
