@@ -15,6 +15,7 @@ from playwright.sync_api import Browser
 from app.gateway.runs import RunPages, runs_application
 from app.pages.library import Library
 from app.pages.matrix import arms, matrix_of
+from app.pages.page import MENU
 from tests.helpers.loopback import on_loopback
 from tests.helpers.page import chromium
 
@@ -53,7 +54,7 @@ def main() -> None:
     given = reader.parse_args()
     library = Library(given.runs)
     library.refresh()
-    app = runs_application(RunPages(library))
+    app = runs_application(RunPages(library, menu=tuple(MENU)))
     server = uvicorn.Server(uvicorn.Config(app, ws="none", log_level="warning", lifespan="off"))
     given.out.mkdir(parents=True, exist_ok=True)
     with on_loopback(server) as base, chromium() as browser:
