@@ -12,15 +12,11 @@ import pytest
 from app.session import commands as c
 from app.session.consent import CONSENT_FILE, Consent
 from app.session.worker import Session
-from c2nav_engine.episodes.profile import VLNCE
-from c2nav_engine.experiments.rankers import seats_for
-from c2nav_engine.runner.opening import OpenSpec, Workbench
+from c2nav_engine.runner.opening import OpenSpec
 from c2nav_engine.runner.recorded import open_trace
-from c2nav_engine.runner.recording import TraceWriter
-from c2nav_engine.runner.source import open_source
-from c2nav_engine.runner.worlds import Worlds, WorldsConfig
 from c2nav_engine.traces import check, recover
 from tests.helpers import stage
+from tests.helpers.benches import workbench
 from tests.helpers.watched import Watched
 
 HOST = "models.example"
@@ -70,15 +66,7 @@ def test_it_is_asked_once_and_kept_in_every_run_that_it_covers(abroad: Watched):
 
 
 def test_a_recorded_yes_is_read_back_and_survives_a_kill(tmp_path: Path):
-    source = open_source("builtin")
-    bench = Workbench(
-        source=source,
-        worlds=Worlds(source, WorldsConfig(VLNCE)),
-        profile=VLNCE,
-        seat_for=seats_for("scripted"),
-        recorder_for=TraceWriter,
-    )
-    run = bench.open(OpenSpec("1", trace=tmp_path / "run.mcap"))
+    run = workbench(ranker="scripted").open(OpenSpec("1", trace=tmp_path / "run.mcap"))
     for _ in range(3):
         run.advance()
     YES.keep(run)

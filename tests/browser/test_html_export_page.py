@@ -16,16 +16,11 @@ from app.exports.family import family_of
 from app.exports.html import HtmlOptions, Setting, export_html
 from app.figures.plan import Plan
 from app.inspector.still.page import still_page
-from c2nav_engine.episodes.profile import VLNCE
-from c2nav_engine.experiments.rankers import seats_for
-from c2nav_engine.experiments.spec import Setting as RunSetting
-from c2nav_engine.experiments.working import source_of
-from c2nav_engine.runner.opening import OpenSpec, Workbench
+from c2nav_engine.runner.opening import OpenSpec
 from c2nav_engine.runner.record import EpisodeOutcome, Footer
 from c2nav_engine.runner.recorded import Trace, read_trace
-from c2nav_engine.runner.recording import TraceWriter
-from c2nav_engine.runner.worlds import Worlds, WorldsConfig
 from c2nav_engine.world.scene import Material, Piece, Scene, scene_of
+from tests.helpers.benches import workbench
 from tests.helpers.exchanges import write_fake
 from tests.helpers.page import PATIENCE_MS
 from tests.helpers.plays import fork, recording, story
@@ -244,16 +239,8 @@ def test_nothing_overflows_sideways(browser: Browser, family_page: Path, size: t
 
 @pytest.mark.slow
 def test_thirty_one_decisions_of_a_built_in_episode_fit_and_open(browser: Browser, tmp_path: Path):
-    source = source_of(RunSetting(source="builtin"))
-    worlds = Worlds(source, WorldsConfig(VLNCE))
-    bench = Workbench(
-        source=source,
-        worlds=worlds,
-        profile=VLNCE,
-        seat_for=seats_for("random", {}),
-        recorder_for=TraceWriter,
-    )
-    run = bench.open(OpenSpec(source.file.episodes[0].episode_id, "full"))
+    bench = workbench()
+    run = bench.open(OpenSpec("1"))
     while run.pending is not None and sum(e.decision is not None for e in run.exchanges) < 31:
         run.advance()
     count = sum(e.decision is not None for e in run.exchanges)
@@ -261,7 +248,7 @@ def test_thirty_one_decisions_of_a_built_in_episode_fit_and_open(browser: Browse
     trace = Trace(run.header, tuple(run.exchanges), footer, "a" * 64, complete=True, path=tmp_path)
     run.close()
     members = family_of([trace])
-    scene = worlds.of(run.header.episode.scene_id).scene
+    scene = bench.worlds.of(run.header.episode.scene_id).scene
     world = still_page([(m.branch, m.story) for m in members], scene)
     out = tmp_path / "builtin.html"
     page = export_html([trace], out, setting=Setting(world=world))

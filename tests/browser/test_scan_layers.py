@@ -13,13 +13,11 @@ from app.commands.sources import opened_traces
 from app.inspector.scene.storey import storey_m
 from app.session import commands as c
 from c2nav_engine.episodes.profile import VLNCE
-from c2nav_engine.experiments.rankers import seats_for
 from c2nav_engine.experiments.spec import Setting
 from c2nav_engine.geometry import Pinhole
-from c2nav_engine.runner.opening import OpenSpec, Workbench
-from c2nav_engine.runner.recording import TraceWriter
+from c2nav_engine.runner.opening import OpenSpec
 from c2nav_engine.runner.source import open_source
-from c2nav_engine.runner.worlds import Worlds, WorldsConfig
+from tests.helpers.benches import workbench
 from tests.helpers.page import inspector, visit
 from tests.helpers.scans import NAMES, RISE_M, write_scans
 
@@ -49,13 +47,7 @@ def climbed(folder: Path) -> Path:
     """A trace of the simulated observer walking up the stairs."""
     source = open_source(str(write_scans(folder)), scenes=folder)
     profile = replace(VLNCE, rgb=Pinhole(48, 48, 1.57), depth=Pinhole(48, 48, 1.57))
-    bench = Workbench(
-        source=source,
-        worlds=Worlds(source, WorldsConfig(profile, cache=folder / "cache")),
-        profile=profile,
-        seat_for=seats_for("simulated"),
-        recorder_for=TraceWriter,
-    )
+    bench = workbench(source, ranker="simulated", profile=profile, cache=folder / "cache")
     trace = folder / "climbed.mcap"
     run = bench.open(OpenSpec(str(STAIRS + 1), run="test", trace=trace))
     while run.pending is not None:

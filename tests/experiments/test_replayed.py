@@ -21,8 +21,7 @@ from c2nav_engine.runner.record import EpisodeOutcome
 from c2nav_engine.runner.recorded import open_trace, read_trace
 from c2nav_engine.runner.recording import TraceWriter
 from c2nav_engine.runner.replaying import difference
-from c2nav_engine.runner.source import open_source
-from c2nav_engine.runner.worlds import Worlds, WorldsConfig
+from tests.helpers.benches import workbench
 from tests.helpers.exchanges import fake_episode
 
 SHORT = replace(VLNCE, max_steps=12)
@@ -30,14 +29,7 @@ SHORT = replace(VLNCE, max_steps=12)
 
 @pytest.fixture(scope="module")
 def bench() -> Workbench:
-    source = open_source("builtin")
-    return Workbench(
-        source=source,
-        worlds=Worlds(source, WorldsConfig(SHORT)),
-        profile=SHORT,
-        seat_for=seats_for("random"),
-        recorder_for=TraceWriter,
-    )
+    return workbench(profile=SHORT)
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,6 @@ from c2nav_engine.contract.outcome import Ordering
 from c2nav_engine.contract.question import Slot
 from c2nav_engine.episodes.profile import VLNCE
 from c2nav_engine.errors import StartError, UsageError
-from c2nav_engine.experiments.rankers import seats_for
 from c2nav_engine.geometry import Pose
 from c2nav_engine.navigator.requests import Ask, Look, Move, Moved, Seen
 from c2nav_engine.runner.episode_run import EpisodeRun, run_to_end
@@ -18,27 +17,18 @@ from c2nav_engine.runner.exchange import Exchange, Override
 from c2nav_engine.runner.opening import OpenSpec, Workbench, start_on
 from c2nav_engine.runner.record import EpisodeOutcome
 from c2nav_engine.runner.recorded import read_trace
-from c2nav_engine.runner.recording import TraceWriter
 from c2nav_engine.runner.replaying import difference, replay
 from c2nav_engine.runner.reshell import shell_of
-from c2nav_engine.runner.source import open_source
-from c2nav_engine.runner.worlds import Worlds, WorldsConfig
 from c2nav_engine.sensing.noise import NoiseConfig
 from tests.helpers.audit import faults_of
+from tests.helpers.benches import workbench
 
 SHORT = replace(VLNCE, max_steps=24)
 
 
 @pytest.fixture(scope="module")
 def bench() -> Workbench:
-    source = open_source("builtin")
-    return Workbench(
-        source=source,
-        worlds=Worlds(source, WorldsConfig(SHORT)),
-        profile=SHORT,
-        seat_for=seats_for("random"),
-        recorder_for=TraceWriter,
-    )
+    return workbench(profile=SHORT)
 
 
 @pytest.fixture(scope="module")

@@ -11,12 +11,11 @@ import pytest
 from c2nav_engine.episodes.files import write_episodes
 from c2nav_engine.episodes.profile import LAVIRA, VLNCE
 from c2nav_engine.errors import EpisodeError, SceneError
-from c2nav_engine.experiments.rankers import seats_for
 from c2nav_engine.geometry import Pinhole
-from c2nav_engine.runner.opening import OpenSpec, Workbench
-from c2nav_engine.runner.recording import TraceWriter
+from c2nav_engine.runner.opening import OpenSpec
 from c2nav_engine.runner.source import Source, open_source
 from c2nav_engine.runner.worlds import Worlds, WorldsConfig
+from tests.helpers.benches import workbench
 from tests.helpers.navmesh_bytes import MeshSpec, TileSpec, write_navmesh
 from tests.helpers.scans import scans, write_scans
 
@@ -50,14 +49,7 @@ def headers(source, tmp_path_factory):
 
     def opened(profile, episode_id):
         profile = replace(profile, rgb=EYES, depth=EYES)
-        bench = Workbench(
-            source=source,
-            worlds=Worlds(source, WorldsConfig(profile, cache=cache)),
-            profile=profile,
-            seat_for=seats_for("random"),
-            recorder_for=TraceWriter,
-        )
-        run = bench.open(OpenSpec(episode_id))
+        run = workbench(source, profile=profile, cache=cache).open(OpenSpec(episode_id))
         run.close()
         return run.header
 
