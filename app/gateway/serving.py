@@ -93,6 +93,17 @@ def application(
     return app
 
 
+def mount_pages(
+    app: FastAPI, opened: Opened, runs: RunPages | None, *, beside: Sequence[Path] = ()
+) -> None:
+    """Add every page that belongs to what was opened; arguments as in `serve`."""
+    menu = menu_of(opened, runs)
+    mount_judging(app, [entry.entry_id for entry in opened.entries])
+    mount_agreement(app, opened, menu=menu, beside=beside)
+    if runs is not None:
+        mount_runs(app, replace(runs, menu=menu))
+
+
 class Server(uvicorn.Server):
     """Ends the event streams before it waits for connections to close: they never would."""
 
@@ -134,12 +145,9 @@ def serve(
     shell = Shell(session)
     session.start()
     try:
-        menu = menu_of(opened, runs)
-        app = application(session, shell, names=names_of(host), menu=menu)
-        mount_judging(app, [entry.entry_id for entry in opened.entries])
-        mount_agreement(app, opened, menu=menu, beside=beside)
+        app = application(session, shell, names=names_of(host), menu=menu_of(opened, runs))
+        mount_pages(app, opened, runs, beside=beside)
         if runs is not None:
-            mount_runs(app, replace(runs, menu=menu))
             runs.library.start()
         config = uvicorn.Config(
             app,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,9 +10,8 @@ from fastapi import FastAPI
 from starlette.testclient import TestClient
 
 from app.commands.sources import opened_traces
-from app.gateway.agreement import mount_agreement
-from app.gateway.runs import RunPages, mount_runs, runs_application
-from app.gateway.serving import menu_of
+from app.gateway.runs import RunPages, runs_application
+from app.gateway.serving import menu_of, mount_pages
 from app.gateway.shell_page import with_tags
 from app.pages.library import Library
 from app.session.opened import Opened
@@ -43,10 +41,7 @@ def opened(tmp_path: Path) -> tuple[Opened, RunPages]:
 def served(opened: Opened, runs: RunPages | None) -> TestClient:
     """What stands beside the inspector, and a page in its place."""
     app = FastAPI()
-    menu = menu_of(opened, runs)
-    mount_agreement(app, opened, menu=menu)
-    if runs is not None:
-        mount_runs(app, replace(runs, menu=menu))
+    mount_pages(app, opened, runs)
     app.get("/")(lambda: "the inspector")
     return TestClient(app, base_url="http://127.0.0.1")
 

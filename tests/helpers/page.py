@@ -15,7 +15,8 @@ import pytest
 import uvicorn
 from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
-from app.gateway.serving import Server, application
+from app.gateway.runs import RunPages
+from app.gateway.serving import Server, application, menu_of, mount_pages
 from app.inspector.shell import Shell
 from app.session.opened import Opened
 from app.session.worker import Session
@@ -42,13 +43,16 @@ MOST_BYTES = 250_000
 
 
 @contextmanager
-def inspector(opened: Opened) -> Generator[tuple[str, Session]]:
-    """Serve what was opened on a free loopback port."""
+def inspector(opened: Opened, runs: RunPages | None = None) -> Generator[tuple[str, Session]]:
+    """Serve what was opened on a free loopback port; with pages about runs where they are given."""
     session = Session(opened)
     shell = Shell(session)
     session.start()
+    app = application(session, shell, menu=menu_of(opened, runs) if runs else ())
+    if runs is not None:
+        mount_pages(app, opened, runs)
     config = uvicorn.Config(
-        application(session, shell),
+        app,
         ws="websockets-sansio",
         ws_max_size=1 << 40,
         log_level="warning",
