@@ -186,6 +186,7 @@ class Desk:
         generation = self._generation
 
         def task() -> Message:
+            self.hands.calm()
             try:
                 scene = load()
             except C2NavError as error:

@@ -9,7 +9,7 @@ class FirstPage:
     """Whether anybody has asked for a page yet, and whether one stands.
 
     A page that is being built wants every core for a second or two. What nobody can use before it
-    stands (the map, suspects) begins after it. Where nobody comes it begins soon, so that it
+    stands (scene, map, suspects) begins after it. Where nobody comes it begins soon, so that it
     is there when somebody does.
     """
 

@@ -50,7 +50,7 @@ class Session:
         Args:
             opened: What to show.
             clock: Wall clock, seconds since the epoch.
-            first_page: What suspects, and the map, wait for; nothing by default.
+            first_page: What scene, suspects and map wait for; nothing by default.
 
         Raises:
             C2NavError: When that cannot be opened.
