@@ -39,7 +39,11 @@ others.
 NOISELESS_SEATS = seats_for("simulated", NOISELESS)
 
 Wrong = Mapping[int, Key]
-"""Number of an election of the episode, from 0 → what is elected there, right or not."""
+"""Number of an election of the episode, from 0 → the worst view, which is elected there.
+
+Another way through the episode brings other views to that election: then the worst of those is
+elected, so that a detour around one mistake does not turn the next one into the right answer.
+"""
 
 
 def erring_seats(*habits: Wrong) -> SeatFor:
@@ -73,9 +77,11 @@ class _Erring:
 
     def rank(self, question: Question) -> Ranked:
         ranked = self._ranker.rank(question)
-        wrong = self._wrong.get(self._election, "")
-        if question.slot is not Slot.SEEING or wrong not in question.keys:
+        planted, outcome = self._wrong.get(self._election), ranked.outcome
+        if question.slot is not Slot.SEEING or planted is None or not isinstance(outcome, Ordering):
             return ranked
+        last = outcome.tiers[-1]
+        wrong = planted if planted in last else last[0]
         return replace(ranked, outcome=Ordering.winner_only(wrong, question.keys))
 
 
