@@ -7,7 +7,6 @@ from itertools import islice
 
 import pytest
 
-from c2nav_engine.contract.outcome import Key
 from c2nav_engine.contract.question import Slot
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.turning.flips import (
@@ -51,6 +50,7 @@ from tests.helpers.planted import (
     decision_of,
     erring_seats,
     flawless,
+    habit,
     spoilt_episodes,
     twice_spoilt_episodes,
     two_needs,
@@ -97,10 +97,6 @@ def two(whole: Flawless) -> tuple[tuple[Mistake, Mistake], Recording]:
     found = two_needs(whole)
     assert found is not None, f"no two mistakes spoil episode {SHORT}; see tests/helpers/planted.py"
     return found
-
-
-def habit(*mistakes: Mistake) -> dict[int, Key]:
-    return {mistake.election: mistake.key for mistake in mistakes}
 
 
 # ---------------------------------------------------------------- (a) and (b)

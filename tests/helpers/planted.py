@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
 
-from c2nav_engine.contract.outcome import Key, Ordering
+from c2nav_engine.contract.outcome import Ordering
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.contract.question import Question, Slot
 from c2nav_engine.episodes.profile import VLNCE
@@ -30,7 +30,7 @@ from c2nav_engine.runner.source import open_source
 from c2nav_engine.runner.worlds import Worlds, WorldsConfig
 
 SHORT = "9"
-"""A short built-in episode that two mistakes spoil, each of which would do so alone.
+"""A short built-in episode that two mistakes spoil and no one answer saves.
 
 Where the built-in hundred is made anew and it does not any more, `twice_spoilt_episodes` tells of
 others.
@@ -38,11 +38,11 @@ others.
 
 NOISELESS_SEATS = seats_for("simulated", NOISELESS)
 
-Wrong = Mapping[int, Key]
-"""Number of an election of the episode, from 0 → the worst view, which is elected there.
+Wrong = Mapping[int, int]
+"""Number of an election of the episode, from 0 → which view is elected there, from the worst, 0.
 
-Another way through the episode brings other views to that election: then the worst of those is
-elected, so that a detour around one mistake does not turn the next one into the right answer.
+Not by name: another way through the episode brings other views to that election, and a detour
+around one mistake is not to turn the next one into the right answer.
 """
 
 
@@ -77,11 +77,11 @@ class _Erring:
 
     def rank(self, question: Question) -> Ranked:
         ranked = self._ranker.rank(question)
-        planted, outcome = self._wrong.get(self._election), ranked.outcome
-        if question.slot is not Slot.SEEING or planted is None or not isinstance(outcome, Ordering):
+        place, outcome = self._wrong.get(self._election), ranked.outcome
+        if question.slot is not Slot.SEEING or place is None or not isinstance(outcome, Ordering):
             return ranked
-        last = outcome.tiers[-1]
-        wrong = planted if planted in last else last[0]
+        worst_first = outcome.tiers[::-1]
+        wrong = worst_first[min(place, len(worst_first) - 1)][0]
         return replace(ranked, outcome=Ordering.winner_only(wrong, question.keys))
 
 
@@ -125,11 +125,28 @@ def run_through(
 
 @dataclass(frozen=True)
 class Mistake:
-    """A wrong answer that can be planted: the election's number, what is elected, what it costs."""
+    """The wrong answer that can be planted at an election, and one less wrong.
+
+    Attributes:
+        election: Its number in the episode, from 0.
+        views: How many views it orders.
+        cost_m: What the worst of them costs.
+        place: Which is elected, from the worst.
+    """
 
     election: int
-    key: Key
+    views: int
     cost_m: float
+    place: int = 0
+
+    def milder(self) -> Iterator[Mistake]:
+        """The other wrong answers at the same election."""
+        return (replace(self, place=place) for place in range(1, self.views - 1))
+
+
+def habit(*mistakes: Mistake) -> Wrong:
+    """Who makes these mistakes, as what they elect."""
+    return {mistake.election: mistake.place for mistake in mistakes}
 
 
 @dataclass(frozen=True)
@@ -144,7 +161,7 @@ class Flawless:
         self, *planted: Mistake, seat_for: SeatFor | None = None, trace: Path | None = None
     ) -> Recording:
         """The episode with mistakes in it, and not a step to spare."""
-        seats = seat_for or erring_seats({mistake.election: mistake.key for mistake in planted})
+        seats = seat_for or erring_seats(habit(*planted))
         return run_through(self.episode_id, seats, max_steps=self.steps, trace=trace)
 
 
@@ -197,7 +214,7 @@ def spoilt_episodes() -> Iterator[tuple[Flawless, Recording, int]]:
 
 
 def twice_spoilt_episodes() -> Iterator[tuple[Flawless, TwoNeeds]]:
-    """Those of them that two mistakes spoil, each of which would do so alone."""
+    """Those of them that no one answer saves once two mistakes are made."""
     for whole, _, _ in spoilt_episodes():
         found = two_needs(whole)
         if found is not None:
@@ -205,14 +222,21 @@ def twice_spoilt_episodes() -> Iterator[tuple[Flawless, TwoNeeds]]:
 
 
 def two_needs(whole: Flawless) -> TwoNeeds | None:
-    """The costliest two mistakes that each spoil the episode alone, with both made in it."""
+    """The costliest two mistakes that no other answer at one of them makes up for."""
     for first, second in combinations(whole.mistakes, 2):
         both = whole.with_mistakes(first, second)
         made = len(_elections(both.exchanges)) > max(first.election, second.election)
-        alone = (whole.with_mistakes(mistake) for mistake in (first, second))
-        if made and not both.succeeded and not any(one.succeeded for one in alone):
+        if made and not both.succeeded and not _saved(whole, first, second):
             return (first, second), both
     return None
+
+
+def _saved(whole: Flawless, first: Mistake, second: Mistake) -> bool:
+    """Whether the right answer, or a less wrong one, in the place of either is enough."""
+    instead = [(first,), (second,)]
+    instead += [(other, second) for other in first.milder()]
+    instead += [(first, other) for other in second.milder()]
+    return any(whole.with_mistakes(*planted).succeeded for planted in instead)
 
 
 def _course(recording: Recording) -> Course:
@@ -231,5 +255,4 @@ def _costliest(recording: Recording, course: Course, number: int, exchange: Exch
     assert exchange.decision is not None
     offered = [c for c in _ask(exchange).facts.candidates if c.feasible]
     after_m = goal_after_m(course, recording.shells[exchange.decision].pose, offered)
-    worst = max(after_m, key=lambda key: after_m[key])
-    return Mistake(number, worst, after_m[worst] - min(after_m.values()))
+    return Mistake(number, len(after_m), max(after_m.values()) - min(after_m.values()))
