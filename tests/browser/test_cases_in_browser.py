@@ -70,6 +70,7 @@ def test_a_set_is_gathered_captioned_and_compared(page: Page, tmp_path: Path):
         assert page.locator("[data-picked]").inner_text() == "2 chosen"
         answer(page, "Add to set…", "failures")
         page.get_by_role("link", name="failures", exact=True).click()
+        page.locator("[data-caption]").nth(1).wait_for()
         assert page.locator(".p-case").count() == 2
         page.locator("[data-caption]").first.fill("Walks into glass.")
         with page.expect_response("**/cases/caption"):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
 
-from c2nav_engine.contract.outcome import Ordering
+from c2nav_engine.contract.outcome import Key, Ordering
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.contract.question import Question, Slot
 from c2nav_engine.episodes.profile import VLNCE
@@ -55,16 +55,18 @@ def erring_seats(*habits: Wrong) -> SeatFor:
         made[stage.episode.episode_id] += 1
         seat = NOISELESS_SEATS(stage)
         assert seat.ranker is not None
-        erring = _Erring(seat, seat.ranker, wrong)
+        erring = _Erring(stage, seat, seat.ranker, wrong)
         return replace(seat, ranker=erring, before_ask=erring.before_ask)
 
     return seat_for
 
 
 class _Erring:
-    def __init__(self, seat: Seat, ranker: Ranker, wrong: Wrong) -> None:
-        self._seat, self._ranker, self._wrong = seat, ranker, wrong
-        self._election = -1
+    """Answers as the ranker of a seat does, but for some elections."""
+
+    def __init__(self, stage: Stage, seat: Seat, ranker: Ranker, wrong: Wrong) -> None:
+        self._stage, self._seat, self._ranker, self._wrong = stage, seat, ranker, wrong
+        self._worst_first: list[Key] = []
 
     @property
     def name(self) -> str:
@@ -73,16 +75,34 @@ class _Erring:
     def before_ask(self, ask: Ask, exchanges: Sequence[Exchange]) -> None:
         assert self._seat.before_ask is not None
         self._seat.before_ask(ask, exchanges)
-        self._election = len(_elections(exchanges))
+        place = self._wrong.get(len(_elections(exchanges)))
+        self._worst_first = []
+        if ask.question.slot is Slot.SEEING and place is not None:
+            poses = [pose for each in exchanges if each.truth for pose in each.truth.poses]
+            offered = [c for c in ask.facts.candidates if c.key in ask.question.keys]
+            pose = poses[-1] if poses else self._stage.start
+            after_m = goal_after_m(_course_of(self._stage), pose, offered)
+            # Whatever is offered here, what is elected stays wrong.
+            place = min(place, max(len(offered) - 2, 0))
+            self._worst_first = sorted(after_m, key=lambda key: -after_m[key])[place:]
 
     def rank(self, question: Question) -> Ranked:
         ranked = self._ranker.rank(question)
-        place, outcome = self._wrong.get(self._election), ranked.outcome
-        if question.slot is not Slot.SEEING or place is None or not isinstance(outcome, Ordering):
+        if not self._worst_first:
             return ranked
-        worst_first = outcome.tiers[::-1]
-        wrong = worst_first[min(place, len(worst_first) - 1)][0]
-        return replace(ranked, outcome=Ordering.winner_only(wrong, question.keys))
+        wrong = Ordering.winner_only(self._worst_first[0], question.keys)
+        return replace(ranked, outcome=wrong)
+
+
+def _course_of(stage: Stage) -> Course:
+    return course_of(
+        stage.episode,
+        start=stage.start,
+        surface=stage.world.surface,
+        field=stage.field,
+        profile=stage.profile,
+        controller=stage.config.controller,
+    )
 
 
 def _elections(exchanges: Sequence[Exchange]) -> list[Exchange]:
