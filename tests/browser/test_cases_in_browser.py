@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 import uvicorn
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Locator, Page
 
 from app.exports.case_sets.unpacking import unpack_set
 from app.gateway.runs import RunPages, runs_application
@@ -48,6 +48,12 @@ def choose(page: Page, *places: int) -> None:
         page.locator(".p-case input[type=checkbox]").nth(place).check()
 
 
+def follow(page: Page, there: Locator) -> None:
+    """Click what leads to another page, and be on it."""
+    with page.expect_navigation():
+        there.click()
+
+
 def answer(page: Page, button: str, name: str) -> None:
     """Press a button of the bar and answer its dialog."""
     page.get_by_role("button", name=button).click()
@@ -65,12 +71,11 @@ def test_a_set_is_gathered_captioned_and_compared(page: Page, tmp_path: Path):
         choose(page, 0, 2)
         answer(page, "Tag…", "glass door")
         page.get_by_role("button", name="Clear").click()
-        page.get_by_role("button", name="glass door", exact=True).click()
+        follow(page, page.get_by_role("button", name="glass door", exact=True))
         page.locator("[data-all]").check()
         assert page.locator("[data-picked]").inner_text() == "2 chosen"
         answer(page, "Add to set…", "failures")
-        page.get_by_role("link", name="failures", exact=True).click()
-        page.locator("[data-caption]").nth(1).wait_for()
+        follow(page, page.get_by_role("link", name="failures", exact=True))
         assert page.locator(".p-case").count() == 2
         page.locator("[data-caption]").first.fill("Walks into glass.")
         with page.expect_response("**/cases/caption"):
@@ -121,7 +126,7 @@ def _opens_elsewhere(page: Page, folder: Path, there: Path) -> None:
     library.refresh()
     with served(library) as url:
         page.goto(f"{url}cases")
-        page.get_by_role("link", name="failures", exact=True).click()
+        follow(page, page.get_by_role("link", name="failures", exact=True))
         assert page.locator(".p-case").count() == 2
         assert page.locator(".p-mark").all_inner_texts() == ["glass door"] * 2
         assert page.locator("[data-caption]").first.input_value() == "Walks into glass."
