@@ -17,6 +17,7 @@ from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.contract.question import Question, Slot
 from c2nav_engine.episodes.profile import VLNCE
 from c2nav_engine.experiments.rankers import seats_for
+from c2nav_engine.experiments.simulated_seat import course_at
 from c2nav_engine.experiments.truth import Course, course_of, goal_after_m
 from c2nav_engine.experiments.turning.moments import Recording, recording_in
 from c2nav_engine.experiments.turning.recoverable import NOISELESS
@@ -81,7 +82,7 @@ class _Erring:
             poses = [pose for each in exchanges if each.truth for pose in each.truth.poses]
             offered = [c for c in ask.facts.candidates if c.key in ask.question.keys]
             pose = poses[-1] if poses else self._stage.start
-            after_m = goal_after_m(_course_of(self._stage), pose, offered)
+            after_m = goal_after_m(course_at(self._stage), pose, offered)
             # Whatever is offered here, what is elected stays wrong.
             place = min(place, max(len(offered) - 2, 0))
             self._worst_first = sorted(after_m, key=lambda key: -after_m[key])[place:]
@@ -92,17 +93,6 @@ class _Erring:
             return ranked
         wrong = Ordering.winner_only(self._worst_first[0], question.keys)
         return replace(ranked, outcome=wrong)
-
-
-def _course_of(stage: Stage) -> Course:
-    return course_of(
-        stage.episode,
-        start=stage.start,
-        surface=stage.world.surface,
-        field=stage.field,
-        profile=stage.profile,
-        controller=stage.config.controller,
-    )
 
 
 def _elections(exchanges: Sequence[Exchange]) -> list[Exchange]:
