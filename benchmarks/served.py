@@ -38,27 +38,37 @@ WINDOW_PX = (1600, 900)
 PATIENCE_MS = 180_000
 
 _FILLED = """
-window.c2bench = {
-  strip: () => document.querySelector("rank-strip")?.shadowRoot,
-  // The strip shows the decision in view, and every picture of it has arrived.
-  filled() {
-    const state = window.c2nav?.state, root = this.strip();
-    if (!state?.decision || !root) return false;
-    const chip = root.querySelector(".chip")?.textContent ?? "";
-    const pictures = [...root.querySelectorAll("img")];
-    return chip.startsWith(`decision ${state.decision.number} of`)
-      && pictures.every((one) => one.complete && one.naturalWidth > 0);
-  },
-  // Milliseconds from `act` until `arrived` holds, looked at every two milliseconds.
-  timed(act, arrived) {
-    return new Promise((done) => {
-      const begun = performance.now();
-      act();
-      const look = () => (arrived() ? done(performance.now() - begun) : setTimeout(look, 2));
-      look();
-    });
-  },
-};
+() => {
+  window.c2bench = {
+    strip: () => document.querySelector("rank-strip")?.shadowRoot,
+    // The strip shows the decision in view, and every picture of it has arrived.
+    filled() {
+      const state = window.c2nav?.state, root = this.strip();
+      if (!state?.decision || !root) return false;
+      const chip = root.querySelector(".chip")?.textContent ?? "";
+      const pictures = [...root.querySelectorAll("img")];
+      return chip.startsWith(`decision ${state.decision.number} of`)
+        && pictures.every((one) => one.complete && one.naturalWidth > 0);
+    },
+    // Milliseconds from `act` until `arrived` holds, looked at every two milliseconds.
+    timed(act, arrived) {
+      return new Promise((done) => {
+        const begun = performance.now();
+        act();
+        const look = () => (arrived() ? done(performance.now() - begun) : setTimeout(look, 2));
+        look();
+      });
+    },
+    // Whether the map has come to rest; every second viser draws it once all the same.
+    drawnMs: 0,
+    rested() { return performance.now() - this.drawnMs > 600; },
+  };
+  const clear = WebGL2RenderingContext.prototype.clear;
+  WebGL2RenderingContext.prototype.clear = function (mask) {
+    window.c2bench.drawnMs = performance.now();
+    return clear.call(this, mask);
+  };
+}
 """
 
 

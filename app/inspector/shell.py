@@ -42,10 +42,11 @@ log = logging.getLogger(__name__)
 
 _BLUE = (0x00, 0x72, 0xB2)
 _REST_S = 0.06
-_AT_LATEST_S = 0.25
+_AT_LATEST_S = 1.0
 """The shell is drawn once nothing has changed for so long and the session is idle, or at the latest
 so long after a change. The page's own strip and timeline come first; where the browser draws the
-map without a GPU, each picture of it takes the cores that the next view is rendered with."""
+map without a GPU, each frame of it takes the cores that the next view is rendered with, and a
+glance renders for a quarter of a second."""
 
 LEFT_PX = 520
 RIGHT_PX = 300

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import struct
+from typing import Any
 
 import numpy as np
 from hypothesis import given
@@ -9,8 +10,10 @@ from hypothesis import strategies as st
 
 from app.inspector.scene.cutting import cut_below
 from app.inspector.scene.glb import Surface, pack
+from app.inspector.scene.mesh import chunks
 from app.inspector.scene.section import section_of
-from c2nav_engine.world.scene import Material
+from app.inspector.scene.shading import ALONG_X, ALONG_Z, LEVEL, shades_of
+from c2nav_engine.world.scene import Material, Piece, scene_of
 
 GREY = Material("grey", (0.5, 0.5, 0.5, 1.0))
 
@@ -32,6 +35,19 @@ def blank(corners_m: np.ndarray) -> np.ndarray:
 def area_m2(corners_m: np.ndarray) -> float:
     sides = corners_m[:, 1:] - corners_m[:, :1]
     return float(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum() / 2.0)
+
+
+def piece(corners_m: np.ndarray, material: Material) -> Piece:
+    """Triangles by their corners as a piece of a scene."""
+    vertices_m = corners_m.reshape(-1, 3)
+    triangles = np.arange(len(vertices_m), dtype=np.int32).reshape(-1, 3)
+    return Piece(material.name, material, vertices_m, triangles)
+
+
+def unpacked(glb: bytes) -> tuple[dict[str, Any], bytes]:
+    """The document of a binary glTF, and its buffer."""
+    size = struct.unpack_from("<I", glb, 12)[0]
+    return json.loads(glb[20 : 20 + size]), glb[28 + size :]
 
 
 @given(st.floats(0.1, 1.9))
@@ -84,8 +100,48 @@ def test_a_packed_scene_says_its_own_length():
     data = pack([surface, surface])
     magic, version, length = struct.unpack_from("<4sII", data)
     assert (magic, version, length) == (b"glTF", 2, len(data))
-    size = struct.unpack_from("<I", data, 12)[0]
-    document = json.loads(data[20 : 20 + size])
+    document, _ = unpacked(data)
     assert len(document["meshes"][0]["primitives"]) == 2
     assert len(document["materials"]) == 1
     assert document["accessors"][0]["count"] == len(corners_m)
+
+
+def test_light_depends_on_how_a_face_lies_and_not_on_its_winding():
+    faces = box((0.0, 0.0, 0.0), (1.0, 2.0, 3.0))
+    normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
+    expected = np.array([ALONG_X, LEVEL, ALONG_Z])[np.abs(normals).argmax(axis=1)]
+    assert np.allclose(shades_of(faces), expected)
+    assert np.allclose(shades_of(faces[:, ::-1]), expected)
+    leaning = np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 1.0]]], np.float32)
+    assert np.allclose(shades_of(leaning), (LEVEL + ALONG_Z) / 2.0)
+    assert np.isfinite(shades_of(np.zeros((1, 3, 3), np.float32))).all()
+
+
+def test_light_is_painted_on_the_vertices_of_what_has_none_of_its_own():
+    photograph = Material("wall", (1.0, 1.0, 1.0, 1.0), unlit=True)
+    corners_m = np.array([[0, 1, 0], [1, 1, 0], [0, 1, 1], [0, 0, 0], [1, 0, 0], [0, 1, 0]], "f4")
+    mesh = scene_of("two", [piece(corners_m, GREY), piece(corners_m, photograph)])
+    (surfaces,) = chunks(mesh, 5.0)
+    document, binary = unpacked(pack(surfaces))
+    assert all("KHR_materials_unlit" in m["extensions"] for m in document["materials"])
+    by_name = {
+        document["materials"][primitive["material"]]["name"]: primitive["attributes"]
+        for primitive in document["meshes"][0]["primitives"]
+    }
+    assert "COLOR_0" not in by_name["wall"]
+    view = document["bufferViews"][document["accessors"][by_name["grey"]["COLOR_0"]]["bufferView"]]
+    start = view["byteOffset"]
+    colours = np.frombuffer(binary[start : start + view["byteLength"]], np.uint8).reshape(-1, 4)
+    light = np.repeat([LEVEL, ALONG_Z], 3) * 255.0
+    assert np.abs(colours[:, :3] - light[:, None]).max() <= 1.0
+    assert (colours[:, 3] == 255).all()
+
+
+def test_what_is_high_is_drawn_first():
+    low, high = (box((0.0, y, 0.0), (1.0, y + 0.5, 1.0)) for y in (0.0, 1.0))
+    red = Material("red", (1.0, 0.0, 0.0, 1.0))
+    pieces = [piece(np.concatenate([low, high]), GREY), piece(high, red)]
+    (surfaces,) = chunks(scene_of("two", pieces), 5.0)
+    assert [surface.material.name for surface in surfaces] == ["red", "grey"]
+    tops_m = surfaces[1].positions_m.reshape(-1, 3, 3)[:, :, 1].max(axis=1)
+    assert (np.diff(tops_m) <= 0.0).all()

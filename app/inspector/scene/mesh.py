@@ -14,6 +14,7 @@ from app.inspector.scene.cutting import CUT_M, cut_below
 from app.inspector.scene.glb import Surface, pack
 from app.inspector.scene.layer import Group
 from app.inspector.scene.section import section_of
+from app.inspector.scene.shading import shades_of
 from app.inspector.scene.storey import storey_of
 from app.session.snapshot import Snapshot
 from c2nav_engine.geometry import Point
@@ -175,7 +176,8 @@ def _chunk(
         if (surface := _surface(mesh, material, spans, height_m)) is not None
     ]
     if surfaces:
-        yield surfaces
+        # Seen from above, what is high hides what is low: drawn first, it saves the browser pixels.
+        yield sorted(surfaces, key=lambda one: -float(one.positions_m[:, 1].mean()))
 
 
 def _surface(
@@ -194,16 +196,20 @@ def _surface(
     soup = cut_below(corners_m, np.concatenate(extra, axis=2) if extra else blank, height_m)
     if not len(soup.corners_m):
         return None
-    flat = soup.extra.reshape(3 * len(soup.extra), soup.extra.shape[2])
+    topmost_first = np.argsort(-soup.corners_m[:, :, 1].max(axis=1), kind="stable")
+    corners_m, values = soup.corners_m[topmost_first], soup.extra[topmost_first]
+    flat = values.reshape(3 * len(values), values.shape[2])
     uvs = None
     if textured:
         uvs = flat[:, :2] * (1.0, -1.0) + (0.0, 1.0)  # ours from the bottom, glTF's from the top
         flat = flat[:, 2:]
-    corners = soup.corners_m.reshape(-1, 3)
+    look = mesh.materials[material]
     return Surface(
-        positions_m=corners.astype(np.float32),
-        triangles=np.arange(len(corners), dtype=np.uint32).reshape(-1, 3),
-        material=mesh.materials[material],
+        positions_m=corners_m.reshape(-1, 3).astype(np.float32),
+        triangles=np.arange(3 * len(corners_m), dtype=np.uint32).reshape(-1, 3),
+        material=look,
         uvs=None if uvs is None else uvs.astype(np.float32),
         colours=flat.round().clip(0, 255).astype(np.uint8) if mesh.colours is not None else None,
+        # Photographs hold their own light.
+        shades=None if look.unlit else np.repeat(shades_of(corners_m), 3),
     )
