@@ -141,7 +141,8 @@ def serve(
     """
     listener = listen(host, port)
     address = Address(host, listener.getsockname()[1])
-    session = Session(opened, first_page=FirstPage(asked_within_s=2.0, stands_within_s=30.0))
+    first_page = FirstPage(asked_within_s=2.0, stands_within_s=30.0, sent_within_s=10.0)
+    session = Session(opened, first_page=first_page)
     shell = Shell(session)
     session.start()
     try:

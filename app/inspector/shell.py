@@ -152,7 +152,12 @@ class Shell:
             LookBack(scene),
             Pin(scene, self._session.dispatch),
             self._cameras,
-            Mesh(scene, lambda: self._session.scene),
+            Mesh(
+                scene,
+                lambda: self._session.scene,
+                self._server.atomic,
+                self._session.first_page.sent,
+            ),
         ]
 
     def _greet(self, client: viser.ClientHandle) -> None:

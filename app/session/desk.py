@@ -51,12 +51,14 @@ class Hands:
     Attributes:
         background: Runs a task on another thread and applies the message it returns.
         clock: Wall clock, seconds since the epoch.
-        calm: Returns once heavy work is in nobody's way; called in the background.
+        after_page: Returns once heavy work is in no page's way; called in the background.
+        after_scene: Returns once the scene is sent, too.
     """
 
     background: Callable[[Callable[[], Message]], None]
     clock: Callable[[], float]
-    calm: Callable[[], None] = lambda: None
+    after_page: Callable[[], None] = lambda: None
+    after_scene: Callable[[], None] = lambda: None
 
 
 class Desk:
@@ -186,7 +188,7 @@ class Desk:
         generation = self._generation
 
         def task() -> Message:
-            self.hands.calm()
+            self.hands.after_page()
             try:
                 scene = load()
             except C2NavError as error:
@@ -246,7 +248,7 @@ class Desk:
         self.assessing = True
 
         def task() -> Message:
-            self.hands.calm()
+            self.hands.after_scene()
             fresh = assessor.assess(story, known)
             return lambda desk: desk.take_assessed(generation, branch_id, known | fresh)
 

@@ -1,4 +1,4 @@
-"""Until the first page stands, heavy work waits: it would take the cores that the page needs."""
+"""What comes first when a page is opened: heavy work would take the cores that it needs."""
 
 from __future__ import annotations
 
@@ -6,25 +6,34 @@ import threading
 
 
 class FirstPage:
-    """Whether anybody has asked for a page yet, and whether one stands.
+    """Whether anybody has asked for a page yet, whether one stands, whether the scene is sent.
 
     A page that is being built wants every core for a second or two. What nobody can use before it
-    stands (scene, map, suspects) begins after it. Where nobody comes it begins soon, so that it
-    is there when somebody does.
+    stands (scene, map) begins after it, and what is looked at last (suspects) after the scene.
+    Where nobody comes all of it begins soon, so that it is there when somebody does.
     """
 
-    def __init__(self, *, asked_within_s: float = 0.0, stands_within_s: float = 0.0) -> None:
+    def __init__(
+        self,
+        *,
+        asked_within_s: float = 0.0,
+        stands_within_s: float = 0.0,
+        sent_within_s: float = 0.0,
+    ) -> None:
         """Nobody has come yet; by default nothing waits.
 
         Args:
             asked_within_s: How long to wait for somebody to ask for a page, seconds.
             stands_within_s: How long a page that was asked for may take, seconds: one whose
                 script never runs must not hold up what others wait for.
+            sent_within_s: How long the scene may take after that, seconds.
         """
         self._asked_within_s = asked_within_s
         self._stands_within_s = stands_within_s
+        self._sent_within_s = sent_within_s
         self._asked = threading.Event()
         self._stands = threading.Event()
+        self._sent = threading.Event()
 
     def asked(self) -> None:
         """Somebody asks for a page."""
@@ -35,7 +44,16 @@ class FirstPage:
         self._stands.set()
         self._asked.set()
 
+    def sent(self) -> None:
+        """The scene is on its way to whoever looks."""
+        self._sent.set()
+
     def wait(self) -> None:
         """Return once heavy work is in nobody's way."""
         if self._asked.wait(self._asked_within_s):
             self._stands.wait(self._stands_within_s)
+
+    def wait_for_scene(self) -> None:
+        """Return once that is so and the scene is sent."""
+        self.wait()
+        self._sent.wait(self._sent_within_s)

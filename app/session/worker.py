@@ -63,7 +63,8 @@ class Session:
         self._subscribers: list[Subscriber] = []
         self._closing = threading.Event()
         self._busy = False
-        self._desk = Desk(opened, self.album, Hands(self._background, clock, self.first_page.wait))
+        hands = Hands(self._background, clock, self.first_page.wait, self.first_page.wait_for_scene)
+        self._desk = Desk(opened, self.album, hands)
         self._behind: Snapshot = self._desk.snapshot
         self._published: Snapshot = self._drawn()
         self._worker = threading.Thread(target=self._work, name="c2nav-session", daemon=True)

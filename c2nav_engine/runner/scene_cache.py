@@ -18,8 +18,8 @@ from c2nav_engine.world.scene_store import FACTS, STORE_VERSION, open_scene, sav
 
 log = logging.getLogger(__name__)
 
-SMALLEST_BYTES = 16_000_000
-"""Smaller files load in a second or two and are read as they are [C]."""
+SMALLEST_BYTES = 1_000_000
+"""Smaller files are read as they are [C]: the loader's import alone takes a second."""
 
 
 def cache_folder() -> Path:

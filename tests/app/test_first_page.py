@@ -20,15 +20,15 @@ NEVER_S = 60.0
 AT_ONCE_S = 0.01
 
 
-def begun(first: FirstPage) -> threading.Event:
-    """Set once heavy work may begin."""
+def begun(wait: Callable[[], None]) -> threading.Event:
+    """Set once that wait is over."""
     event = threading.Event()
 
-    def wait() -> None:
-        first.wait()
+    def work() -> None:
+        wait()
         event.set()
 
-    threading.Thread(target=wait, daemon=True).start()
+    threading.Thread(target=work, daemon=True).start()
     return event
 
 
@@ -38,7 +38,7 @@ def test_by_default_nothing_waits():
 
 def test_heavy_work_waits_until_a_page_stands():
     first = FirstPage(asked_within_s=NEVER_S, stands_within_s=NEVER_S)
-    work = begun(first)
+    work = begun(first.wait)
     assert not work.wait(AT_ONCE_S)
     first.asked()
     assert not work.wait(AT_ONCE_S)
@@ -47,13 +47,22 @@ def test_heavy_work_waits_until_a_page_stands():
     first.wait()  # and from then on nothing waits
 
 
+def test_suspects_wait_for_the_scene_too_but_not_without_end():
+    first = FirstPage(sent_within_s=NEVER_S)
+    waiting = begun(first.wait_for_scene)
+    assert not waiting.wait(AT_ONCE_S)
+    first.sent()
+    assert waiting.wait(NEVER_S)
+    FirstPage(sent_within_s=AT_ONCE_S).wait_for_scene()
+
+
 @pytest.mark.parametrize(
     "come", [lambda _: None, FirstPage.asked], ids=["nobody comes", "a page that never stands"]
 )
 def test_nobody_is_waited_for_without_end(come: Callable[[FirstPage], None]):
     first = FirstPage(asked_within_s=AT_ONCE_S, stands_within_s=AT_ONCE_S)
     come(first)
-    assert begun(first).wait(NEVER_S)
+    assert begun(first.wait).wait(NEVER_S)
 
 
 def test_suspects_are_looked_for_after_the_page_that_says_it_stands():

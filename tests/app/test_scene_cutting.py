@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import struct
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -143,5 +144,54 @@ def test_what_is_high_is_drawn_first():
     pieces = [piece(np.concatenate([low, high]), GREY), piece(high, red)]
     (surfaces,) = chunks(scene_of("two", pieces), 5.0)
     assert [surface.material.name for surface in surfaces] == ["red", "grey"]
-    tops_m = surfaces[1].positions_m.reshape(-1, 3, 3)[:, :, 1].max(axis=1)
+    tops_m = surfaces[1].positions_m[surfaces[1].triangles][:, :, 1].max(axis=1)
     assert (np.diff(tops_m) <= 0.0).all()
+
+
+def bent_sheet(fold_rad: float) -> Piece:
+    """Two squares that share an edge, the second one raised by an angle."""
+    up, along = np.sin(fold_rad), 1.0 + np.cos(fold_rad)
+    vertices_m = np.array(
+        [[0, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1], [along, up, 0], [along, up, 1]], np.float32
+    )
+    triangles = np.array([[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]], np.int32)
+    return Piece("sheet", GREY, vertices_m, triangles)
+
+
+def sent(given: Piece, height_m: float = 5.0) -> Surface:
+    ((surface,),) = chunks(scene_of("one", [given]), height_m)
+    return surface
+
+
+def test_triangles_share_the_vertices_that_they_agree_about():
+    assert len(sent(bent_sheet(0.1)).positions_m) == 6
+    assert len(sent(bent_sheet(np.pi / 2)).positions_m) == 12
+
+
+def test_triangles_that_differ_in_texture_coordinates_share_none_of_those_vertices():
+    picture = np.zeros((2, 2, 4), np.uint8)
+    look = Material("picture", (1.0, 1.0, 1.0, 1.0), texture=picture)
+    flat = bent_sheet(0.0)
+    uvs = flat.vertices_m[flat.triangles][:, :, ::2]
+    whole = replace(flat, material=look, uvs=uvs)
+    assert len(sent(whole).positions_m) == 6
+    torn = uvs.copy()
+    torn[2:] += 0.5
+    surface = sent(replace(whole, uvs=torn))
+    assert surface.uvs is not None
+    corners = {
+        (*position_m, *uv)
+        for position_m, uv in zip(
+            surface.positions_m.tolist(), surface.uvs.round(4).tolist(), strict=True
+        )
+    }
+    assert len(corners) == 8
+
+
+@given(st.floats(0.05, 1.0), st.floats(0.0, 1.5))
+def test_sharing_moves_nothing(height_m: float, fold_rad: float):
+    given_piece = bent_sheet(fold_rad)
+    corners_m = given_piece.vertices_m[given_piece.triangles]
+    expected_m2 = area_m2(cut_below(corners_m, blank(corners_m), height_m).corners_m)
+    surface = sent(given_piece, height_m)
+    assert np.isclose(area_m2(surface.positions_m[surface.triangles]), expected_m2, atol=1e-5)

@@ -1,21 +1,22 @@
-"""The scene's mesh: ceiling cut, parts sent one by one, cut faces darkened."""
+"""The scene's mesh: ceiling cut, cut faces darkened, sent once it is whole."""
 
 from __future__ import annotations
 
 import logging
 import threading
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 
 import numpy as np
 import viser
 
-from app.inspector.scene.cutting import CUT_M, cut_below
+from app.inspector.scene.cutting import CUT_M
 from app.inspector.scene.glb import Surface, pack
 from app.inspector.scene.layer import Group
-from app.inspector.scene.section import section_of
-from app.inspector.scene.shading import shades_of
+from app.inspector.scene.section import Section, section_of
 from app.inspector.scene.storey import storey_of
+from app.inspector.scene.surfaces import surface_below
 from app.session.snapshot import Snapshot
 from c2nav_engine.geometry import Point
 from c2nav_engine.world.scene import Scene
@@ -23,7 +24,7 @@ from c2nav_engine.world.scene import Scene
 log = logging.getLogger(__name__)
 
 _CHUNK_TRIANGLES = 150_000
-"""Triangles of one message: the page shows parts as they arrive and stays usable meanwhile."""
+"""Triangles of one message: the page reads one after the other and stays usable meanwhile."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,10 +48,25 @@ class Mesh:
     and the other layers go on meanwhile.
     """
 
-    def __init__(self, scene: viser.SceneApi, fetch: Callable[[], Scene | None]) -> None:
-        """Remember where the loaded scene is found."""
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        fetch: Callable[[], Scene | None],
+        together: Callable[[], AbstractContextManager[None]],
+        sent: Callable[[], None] = lambda: None,
+    ) -> None:
+        """Draw nothing yet.
+
+        Args:
+            scene: Where to draw.
+            fetch: The loaded scene, once it is there.
+            together: Within it, messages are held back and sent as one.
+            sent: Called whenever a scene is on its way.
+        """
         self._scene = scene
         self._fetch = fetch
+        self._together = together
+        self._sent = sent
         self._wanted: Cut | None = None
         self._drawn: Cut | None = None
         self._shown = True
@@ -92,17 +108,20 @@ class Mesh:
     def _replace(self, wanted: Cut | None) -> None:
         """Runs in a thread of its own, where nobody else would hear of what goes wrong."""
         try:
-            stale, self._handles = self._handles, []
-            kept: set[str] = set()
-            for handle in () if wanted is None else draw_cut(self._scene, wanted):
-                kept.add(handle.name)
-                handle.visible = self._shown
-                self._handles.append(handle)
-            for handle in stale:
-                if handle.name not in kept:
+            cutaway = None if wanted is None else cutaway_of(wanted)
+            # All at once: a browser without a GPU takes half a second for each frame of a large
+            # scan, and reads what came for the next one only after it.
+            with self._together():
+                stale = {handle.name: handle for handle in self._handles}
+                self._handles = [] if cutaway is None else list(send(self._scene, cutaway))
+                for handle in self._handles:
+                    handle.visible = self._shown
+                    stale.pop(handle.name, None)
+                for handle in stale.values():
                     handle.remove()
         except Exception:
             log.exception("the scene could not be drawn")
+        self._sent()
 
     def _floor(self, start_m: Point) -> list[viser.SceneNodeHandle]:
         """A metre grid in place of a scene that is not to be had."""
@@ -119,25 +138,42 @@ class Mesh:
         ]
 
 
-def draw_cut(scene: viser.SceneApi, cut: Cut) -> Iterator[viser.SceneNodeHandle]:
-    """Send what lies below a cut, and its cut face."""
-    yield from draw_parts(scene, cut)
-    yield from draw_section(scene, cut)
+@dataclass(frozen=True, slots=True)
+class Cutaway:
+    """What is sent of a mesh.
+
+    Attributes:
+        parts: Binary glTF, a few parts of the mesh each.
+        section: The dark cut face; None where the plane cuts nothing.
+        height_m: Of the cut.
+    """
+
+    parts: tuple[bytes, ...]
+    section: Section | None
+    height_m: float
 
 
-def draw_parts(scene: viser.SceneApi, cut: Cut) -> Iterator[viser.SceneNodeHandle]:
-    """Send the mesh below the cut, a few parts at a time, as /scene/part0 and so on."""
-    for index, surfaces in enumerate(chunks(cut.mesh, cut.height_m)):
-        yield scene.add_glb(
-            f"/scene/part{index}", pack(surfaces), cast_shadow=False, receive_shadow=False
-        )
+def cutaway_of(cut: Cut, *, whole: Scene | None = None) -> Cutaway:
+    """Cut and pack a mesh, which takes seconds for a large scan.
 
-
-def draw_section(scene: viser.SceneApi, cut: Cut) -> Iterator[viser.SceneNodeHandle]:
-    """Send the dark cut face at /scene/section, where the plane cuts anything."""
-    mesh = cut.mesh
+    Args:
+        cut: The mesh as it is sent, and where it is cut.
+        whole: The mesh that the cut face is taken from, where the sent one was made light.
+    """
+    mesh = whole or cut.mesh
     groups = [mesh.vertices_m[mesh.triangles[part.first : part.stop]] for part in mesh.parts]
-    section = section_of(groups, cut.height_m)
+    return Cutaway(
+        parts=tuple(pack(surfaces) for surfaces in chunks(cut.mesh, cut.height_m)),
+        section=section_of(groups, cut.height_m),
+        height_m=cut.height_m,
+    )
+
+
+def send(scene: viser.SceneApi, cutaway: Cutaway) -> Iterator[viser.SceneNodeHandle]:
+    """Add the parts as /scene/part0 and so on, the cut face as /scene/section."""
+    for index, data in enumerate(cutaway.parts):
+        yield scene.add_glb(f"/scene/part{index}", data, cast_shadow=False, receive_shadow=False)
+    section = cutaway.section
     if section is None:
         return
     yield scene.add_image(
@@ -148,7 +184,7 @@ def draw_section(scene: viser.SceneApi, cut: Cut) -> Iterator[viser.SceneNodeHan
         format="png",
         # viser's picture stands in x and y and looks along −z: lay it on its back.
         wxyz=(0.7071068, 0.7071068, 0.0, 0.0),
-        position=(section.centre_m[0], cut.height_m + 0.002, section.centre_m[1]),
+        position=(section.centre_m[0], cutaway.height_m + 0.002, section.centre_m[1]),
         cast_shadow=False,
         receive_shadow=False,
     )
@@ -170,46 +206,15 @@ def chunks(mesh: Scene, height_m: float) -> Iterator[list[Surface]]:
 def _chunk(
     mesh: Scene, runs: dict[int, list[tuple[int, int]]], height_m: float
 ) -> Iterator[list[Surface]]:
+    rows = {
+        material: np.concatenate([np.arange(first, stop) for first, stop in spans])
+        for material, spans in runs.items()
+    }
     surfaces = [
         surface
-        for material, spans in runs.items()
-        if (surface := _surface(mesh, material, spans, height_m)) is not None
+        for material, own in rows.items()
+        if (surface := surface_below(mesh, material, own, height_m)) is not None
     ]
     if surfaces:
-        # Seen from above, what is high hides what is low: drawn first, it saves the browser pixels.
+        # As within a surface: the topmost first.
         yield sorted(surfaces, key=lambda one: -float(one.positions_m[:, 1].mean()))
-
-
-def _surface(
-    mesh: Scene, material: int, spans: list[tuple[int, int]], height_m: float
-) -> Surface | None:
-    index = np.concatenate([np.arange(first, stop) for first, stop in spans])
-    triangles = mesh.triangles[index]
-    corners_m = mesh.vertices_m[triangles]
-    textured = mesh.uvs is not None and mesh.materials[material].texture is not None
-    extra: list[np.ndarray] = []
-    if textured and mesh.uvs is not None:
-        extra.append(mesh.uvs[index])
-    if mesh.colours is not None:
-        extra.append(mesh.colours[triangles].astype(np.float32))
-    blank = np.zeros((*corners_m.shape[:2], 0), np.float32)
-    soup = cut_below(corners_m, np.concatenate(extra, axis=2) if extra else blank, height_m)
-    if not len(soup.corners_m):
-        return None
-    topmost_first = np.argsort(-soup.corners_m[:, :, 1].max(axis=1), kind="stable")
-    corners_m, values = soup.corners_m[topmost_first], soup.extra[topmost_first]
-    flat = values.reshape(3 * len(values), values.shape[2])
-    uvs = None
-    if textured:
-        uvs = flat[:, :2] * (1.0, -1.0) + (0.0, 1.0)  # ours from the bottom, glTF's from the top
-        flat = flat[:, 2:]
-    look = mesh.materials[material]
-    return Surface(
-        positions_m=corners_m.reshape(-1, 3).astype(np.float32),
-        triangles=np.arange(3 * len(corners_m), dtype=np.uint32).reshape(-1, 3),
-        material=look,
-        uvs=None if uvs is None else uvs.astype(np.float32),
-        colours=flat.round().clip(0, 255).astype(np.uint8) if mesh.colours is not None else None,
-        # Photographs hold their own light.
-        shades=None if look.unlit else np.repeat(shades_of(corners_m), 3),
-    )

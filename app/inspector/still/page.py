@@ -15,7 +15,7 @@ from app.inspector.scene.cameras import framed_points, overview
 from app.inspector.scene.colours import GREY
 from app.inspector.scene.cutting import CUT_M
 from app.inspector.scene.goal import Goal
-from app.inspector.scene.mesh import Cut, draw_parts, draw_section
+from app.inspector.scene.mesh import Cut, cutaway_of, send
 from app.inspector.scene.storey import storey_of
 from app.inspector.scene.trajectory import Trajectory
 from app.inspector.still.lighter import Lightness, lighter
@@ -51,9 +51,7 @@ def still_page(
         _dress(server, snapshot)
         for layer in (Trajectory(server.scene), Body(server.scene), Goal(server.scene)):
             layer.update(snapshot)
-        list(draw_parts(server.scene, Cut(light, height_m)))
-        # The cut face is taken from the mesh before it was made light.
-        list(draw_section(server.scene, Cut(scene, height_m)))
+        list(send(server.scene, cutaway_of(Cut(light, height_m), whole=scene)))
         for branch, other in runs[1:]:
             _draw_other(server.scene, branch, other)
         server.flush()
