@@ -33,6 +33,9 @@ from c2nav_engine.world.connectivity import ConnectivityGraph, connectivity_of
 from c2nav_engine.world.scene import Scene
 from c2nav_engine.world.surface import Surface
 
+_THUMBNAIL_WITHIN = 8
+"""Decisions of a trace among which a picture for lists is looked for [C]."""
+
 INSPECTED = Path("logs") / "inspected"
 """Where live episodes and forks of the inspector are recorded, below the working folder."""
 
@@ -238,13 +241,16 @@ def _entry(path: Path) -> Entry:
 
 
 def _first_picture(path: Path) -> Picture | None:
-    """The front view of a trace's first decision; None where the trace holds no pictures."""
+    """The front view of a trace's first decision with pictures; None where the first have none."""
     with open_trace(path) as trace:
-        request = trace.decision(0).request if trace.decision_count else None
-    facts = request.facts if isinstance(request, Ask) else None
-    pictures = [c.picture for c in facts.candidates if c.picture] if facts else []
-    shown = [picture for picture in pictures if picture.jpeg]
-    return shown[len(shown) // 2] if shown else None
+        for number in range(min(trace.decision_count, _THUMBNAIL_WITHIN)):
+            request = trace.decision(number).request
+            facts = request.facts if isinstance(request, Ask) else None
+            pictures = [c.picture for c in facts.candidates if c.picture] if facts else []
+            shown = [picture for picture in pictures if picture.jpeg]
+            if shown:
+                return shown[len(shown) // 2]
+    return None
 
 
 def _recorded(path: Path, scenes: Path | None, reasked: Mapping[str, ByDecision]) -> Opening:

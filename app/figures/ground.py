@@ -126,7 +126,9 @@ def _points(story: Story) -> Iterable[Point]:
     yield from (footstep.pose.position_m for footstep in story.track.footsteps)
     yield from episode.reference_path_m
     if episode.goal_m is not None:
-        yield episode.goal_m
+        # The whole disc: whether a run ended inside it is what a map is looked at for.
+        (x, y, z), reach = episode.goal_m, episode.goal_radius_m
+        yield from ((x - reach, y, z - reach), (x + reach, y, z + reach))
 
 
 def fitted(

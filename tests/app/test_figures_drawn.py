@@ -15,6 +15,7 @@ import pytest
 from app.figures import style as signs
 from app.figures.compare import first_parting
 from app.figures.figure import FigureSpec, Kind, caption, draw, inches
+from app.figures.ground import window_m
 from app.figures.legs import legs_walked
 from app.figures.plan import Plan, floor_rings, rings_of
 from app.figures.sheet import Sheet, width_of, wrapped
@@ -292,6 +293,15 @@ def floor_of(*squares: tuple[float, float, float, float]) -> np.ndarray:
         a, b, c, d = (x, y, z), (x + side, y, z), (x + side, y, z + side), (x, y, z + side)
         triangles += [[a, b, c], [a, c, d]]
     return np.array(triangles)
+
+
+def test_a_map_holds_the_whole_disc_of_the_goal(every_slot: Story):
+    episode = every_slot.header.episode
+    assert episode.goal_m is not None
+    (x, _, z), reach = episode.goal_m, episode.goal_radius_m
+    least_x, least_z, most_x, most_z = window_m([every_slot])
+    assert least_x <= x - reach < x + reach <= most_x
+    assert least_z <= z - reach < z + reach <= most_z
 
 
 def test_a_floor_becomes_its_outline():
