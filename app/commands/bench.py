@@ -92,6 +92,8 @@ BENCHES: Mapping[str, Bench] = {
         (
             "step_click_to_picture_p50_ms",
             "step_click_to_picture_p95_ms",
+            "step_at_once_p50_ms",
+            "step_at_once_p95_ms",
             "step_server_processor_ms",
         ),
         _module("page", "measure_step"),
