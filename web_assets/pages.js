@@ -56,6 +56,10 @@ if (run) {
   }, 4000);
 }
 
+// ---------------------------------------------------------------- a page that is not ready yet
+
+if (document.querySelector("[data-again]")) setTimeout(() => window.location.reload(), 1000);
+
 // ---------------------------------------------------------------- cases
 
 const picked = new Set(JSON.parse(sessionStorage.getItem("c2-picked") ?? "[]"));

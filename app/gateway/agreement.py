@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import threading
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -13,7 +12,7 @@ from fastapi import APIRouter, FastAPI, Query
 from fastapi.responses import HTMLResponse, Response
 from pydantic import BaseModel
 
-from app.gateway.best_offered import best_of
+from app.gateway.agreement_desk import AgreementDesk
 from app.pages.agreement import (
     SHADES,
     Bar,
@@ -27,6 +26,7 @@ from app.pages.agreement import (
     agreement_page,
     differences_page,
     nobody_page,
+    reading_page,
 )
 from app.pages.page import link
 from app.reviews.agreement import (
@@ -34,22 +34,19 @@ from app.reviews.agreement import (
     Agreement,
     OrderEffects,
     Pair,
-    agreements,
     kind_of,
-    order_effects,
     pairs_of,
 )
 from app.reviews.answers import Answers, Rater
-from app.reviews.audit import store_beside
-from app.reviews.reading import Questions, merged, of_people, of_reevaluation, of_trace
-from app.reviews.store import FILE
 from app.reviews.truth import BestElected, best_elected, judging_of
 from app.session.opened import Opened
 from app.session.wording import key_words, ranking, slot_words
-from c2nav_engine.contract.outcome import Key
 from c2nav_engine.contract.question import Slot
 from c2nav_engine.errors import C2NavError
 from c2nav_engine.experiments.statistics.intervals import Interval
+
+PATIENCE_S = 1.5
+"""How long a page may take to read traces before it says how far that is [C]."""
 
 _GROUPS = {
     "human-human": "People among themselves",
@@ -58,75 +55,6 @@ _GROUPS = {
     "seen": "◇ People who had seen the model's answer",
     "privileged": "◆ Against a ranker that knows the truth",
 }
-
-
-class AgreementDesk:
-    """What the page is made from; safe to use from several threads.
-
-    Every trace is read once; those that a run adds meanwhile are read when the page is asked for
-    again, and so is what people say, when their store has changed.
-
-    Args:
-        opened: What the inspector is open on: its entries are files of traces.
-        beside: Re-evaluations, whose rankers stand beside the recorded ones.
-    """
-
-    def __init__(self, opened: Opened, beside: Sequence[Path] = ()) -> None:
-        self._opened = opened
-        self._beside = tuple(beside)
-        traces = [Path(entry.entry_id).resolve() for entry in opened.entries]
-        self.runs = tuple(sorted({store_beside(path).parent for path in traces}))
-        self._folders = sorted({path.parent for path in traces})
-        self._entry_of = {
-            path: entry.entry_id for path, entry in zip(traces, opened.entries, strict=True)
-        }
-        self._asked: Questions = {}
-        self._models: dict[Path, Answers] = {}
-        self._read: tuple[tuple[object, ...], Answers] | None = None
-        self._rows: tuple[list[Agreement], list[OrderEffects]] = ([], [])
-        self._best: dict[str, Key] | None = None
-        self._lock = threading.Lock()
-
-    def answers(self) -> Answers:
-        """Everything that was answered until now."""
-        with self._lock:
-            return self._answers()
-
-    def rows(self) -> tuple[list[Agreement], list[OrderEffects]]:
-        """Agreement and order effects of everything until now."""
-        with self._lock:
-            self._answers()
-            return self._rows
-
-    def best(self) -> dict[str, Key]:
-        """Question → the geodesically best alternative; worked out once.
-
-        Raises:
-            C2NavError: A trace or its scene cannot be read.
-        """
-        with self._lock:
-            if self._best is None:
-                self._best = best_of(self._opened, self._entry_of, self._answers())
-            return self._best
-
-    def entry_of(self, trace: Path) -> str:
-        """What the inspector calls a trace; "" where it is not open."""
-        return self._entry_of.get(trace.resolve(), "")
-
-    def _answers(self) -> Answers:
-        traces = [path for folder in self._folders for path in sorted(folder.glob("*.mcap"))]
-        said = (_stamp(run / f"{FILE}{end}") for run in self.runs for end in ("", "-wal"))
-        stamp = (len(traces), *said)
-        if self._read is None or self._read[0] != stamp:
-            for path in traces:
-                if path not in self._models:
-                    self._models[path] = of_trace(path, self._asked)
-            people = [of_people(run, self._asked) for run in self.runs]
-            again = [of_reevaluation(path, self._asked) for path in self._beside]
-            answers = merged([*self._models.values(), *people, *again])
-            self._rows = (agreements(answers), order_effects(answers))
-            self._read = (stamp, answers)
-        return self._read[1]
 
 
 class Asked(BaseModel):
@@ -151,11 +79,6 @@ class Asked(BaseModel):
     best: bool = False
 
 
-def _stamp(path: Path) -> object:
-    found = path.stat() if path.is_file() else None
-    return None if found is None else (found.st_size, found.st_mtime_ns)
-
-
 def agreement_routes(desk: AgreementDesk, menu: Sequence[str]) -> APIRouter:
     """The page, and the decisions behind its cells; `menu` names the pages served with it."""
     router = APIRouter(include_in_schema=False)
@@ -163,6 +86,9 @@ def agreement_routes(desk: AgreementDesk, menu: Sequence[str]) -> APIRouter:
     @router.get("/agreement")
     def agreement(asked: Annotated[Asked, Query()]) -> Response:
         runs = tuple(run.name for run in desk.runs)
+        reading = desk.reading(PATIENCE_S)
+        if reading.done < reading.total:
+            return HTMLResponse(reading_page(reading, runs=runs, menu=menu))
         if not desk.answers().given:
             return HTMLResponse(nobody_page(runs, menu=menu))
         if asked.said_a and asked.said_b:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from app.pages.index.refresh import Progress
 from app.pages.page import framed
 
 WIDTH_PX = 132
@@ -214,6 +215,13 @@ def agreement_page(shown: Shown, *, menu: Sequence[str]) -> str:
 def nobody_page(runs: Sequence[str], *, menu: Sequence[str]) -> str:
     """The page of runs about which nobody has answered anything."""
     return framed("agreement_empty.html.j2", here="agreement", menu=menu, runs=runs)
+
+
+def reading_page(reading: Progress, *, runs: Sequence[str], menu: Sequence[str]) -> str:
+    """The page while traces are still read; it asks again by itself."""
+    return framed(
+        "agreement_reading.html.j2", here="agreement", menu=menu, runs=runs, reading=reading
+    )
 
 
 def differences_page(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import threading
 from collections import Counter
 from html import unescape
 from pathlib import Path
@@ -13,12 +14,14 @@ from starlette.testclient import TestClient
 
 from app.commands.sources import opened_traces
 from app.gateway import agreement as gateway
-from app.gateway.agreement import AgreementDesk, mount_agreement
+from app.gateway import agreement_desk
+from app.gateway.agreement import mount_agreement
+from app.gateway.agreement_desk import AgreementDesk
 from app.pages.page import MENU
 from app.reviews.agreement import agreements, order_effects
 from app.reviews.answers import Answer, Answers, Rater
 from app.reviews.desk import Desk
-from app.reviews.reading import read_answers
+from app.reviews.reading import Questions, read_answers
 from app.reviews.study import Person, Study
 from app.reviews.submissions import Submission
 from app.reviews.truth import best_elected
@@ -61,8 +64,36 @@ def client(run: Path) -> TestClient:
     return TestClient(app)
 
 
+@pytest.fixture(autouse=True)
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However slow the machine, the page is waited for."""
+    monkeypatch.setattr(gateway, "PATIENCE_S", 60.0)
+
+
 def words(page: str) -> str:
     return " ".join(unescape(re.sub(r"<[^>]+>", " ", page)).split())
+
+
+def test_the_page_says_how_far_the_reading_is_and_comes_by_itself(
+    judged: Path, monkeypatch: pytest.MonkeyPatch
+):
+    gate = threading.Event()
+    read = agreement_desk.of_trace
+
+    def second_waits(path: Path, asked: Questions) -> Answers:
+        if asked:
+            gate.wait()
+        return read(path, asked)
+
+    monkeypatch.setattr(agreement_desk, "of_trace", second_waits)
+    monkeypatch.setattr(gateway, "PATIENCE_S", 0.0)
+    browser = client(judged)
+    page = browser.get("/agreement").text
+    assert "data-again" in page
+    assert re.search(r"reading traces: [01] of 4", words(page))
+    gate.set()
+    monkeypatch.setattr(gateway, "PATIENCE_S", 60.0)
+    assert "data-again" not in browser.get("/agreement").text
 
 
 def test_the_page_shows_the_figures_of_the_command(judged: Path):
@@ -128,7 +159,7 @@ def test_what_people_add_shows_without_reading_traces_again(
     def never(*_: object) -> Answers:
         raise AssertionError("the traces were read again")
 
-    monkeypatch.setattr(gateway, "of_trace", never)
+    monkeypatch.setattr(agreement_desk, "of_trace", never)
     assert "people 1" in words(page.get("/agreement").text)
     judge(study, bob, most=1)
     assert "people 2" in words(page.get("/agreement").text)
