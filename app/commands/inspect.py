@@ -20,6 +20,7 @@ from app.commands.options import (
 )
 from app.commands.run_folders import folder_of_runs, pages_of, traces_under, with_later_traces
 from app.commands.sources import opened_source, opened_traces, trace_files
+from app.gateway.alone import listen
 from app.gateway.runs import serve_runs
 from app.gateway.serving import Address, serve, tunnel_line
 from c2nav_engine.errors import UsageError
@@ -76,10 +77,19 @@ def inspect(
         message = "expected --headings and --ground-truth beside a source: recordings keep theirs"
         raise UsageError(message)
     graphs = connectivity_folder(connectivity, scenes)
+    listener = listen(host, port)
     if root is not None and not traces:
         # Nothing can be stepped yet, but how far the run is can be told.
-        serve_runs(pages_of(root, scenes), host=host, port=port, ready=_tell_pages)
-        return 0
+        serve_runs(
+            pages_of(root, scenes),
+            listener,
+            host=host,
+            ready=_tell_pages,
+            over=lambda: bool(traces_under(root)),
+        )
+        traces = traces_under(root)
+        if not traces:
+            return 0
     opened = (
         opened_traces(traces, setting, beside=with_, connectivity=graphs)
         if traces
@@ -91,12 +101,21 @@ def inspect(
         opened = with_later_traces(opened, root, setting, connectivity=graphs)
         runs = pages_of(root, scenes)
     ready = _tell if runs is None else _tell_run
-    serve(opened, host=host, port=port, no_browser=no_browser, ready=ready, runs=runs, beside=with_)
+    serve(
+        opened,
+        listener,
+        host=host,
+        no_browser=no_browser,
+        ready=ready,
+        runs=runs,
+        beside=with_,
+    )
     return 0
 
 
 def _tell_pages(url: str) -> None:
-    Console(highlight=False).print(f"run at {url}run; no trace is finished yet", markup=False)
+    words = "no trace is finished yet; the inspector follows at the first"
+    Console(highlight=False).print(f"run at {url}run; {words}", markup=False, soft_wrap=True)
 
 
 def _tell_run(address: Address) -> None:

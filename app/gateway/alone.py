@@ -14,20 +14,44 @@ _WAITING = 64
 """Connections that may wait while the server starts."""
 
 
-def serve_alone(app: FastAPI, listener: socket.socket, *, ready: Callable[[str], None]) -> None:
+class _Until(uvicorn.Server):
+    """A server that also ends by itself."""
+
+    def __init__(self, config: uvicorn.Config, over: Callable[[], bool]) -> None:
+        super().__init__(config)
+        self._over = over
+
+    async def on_tick(self, counter: int) -> bool:
+        """Called ten times a second; asks once a second."""
+        return await super().on_tick(counter) or (counter % 10 == 0 and self._over())
+
+
+def serve_alone(
+    app: FastAPI,
+    listener: socket.socket,
+    *,
+    ready: Callable[[str], None],
+    over: Callable[[], bool] = lambda: False,
+) -> None:
     """Serve an application until interrupted.
 
     Args:
         app: What to serve.
-        listener: Of `listen`.
+        listener: Of `listen`; closed at the end.
         ready: Told the address before the first request is served.
+        over: Asked once a second whether to end.
     """
     host, port = listener.getsockname()[:2]
     config = uvicorn.Config(
-        app, ws="none", log_level="warning", access_log=False, server_header=False
+        app,
+        ws="none",
+        log_level="warning",
+        access_log=False,
+        timeout_graceful_shutdown=1,
+        server_header=False,
     )
     ready(f"http://{host}:{port}/")
-    uvicorn.Server(config).run(sockets=[listener])
+    _Until(config, over).run(sockets=[listener])
 
 
 def listen(host: str, port: int) -> socket.socket:

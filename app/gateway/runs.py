@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import socket
 from collections.abc import AsyncGenerator, Callable, Iterable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.exports.case_sets.packing import fresh_folder, pack_set
 from app.figures.plan import Plan
-from app.gateway.alone import listen, names_of, serve_alone
+from app.gateway.alone import names_of, serve_alone
 from app.gateway.assets import assets, serve_assets
 from app.gateway.doors import Doors
 from app.pages.cases import cases_page
@@ -246,7 +247,24 @@ def runs_application(pages: RunPages, *, names: Iterable[str] = ()) -> FastAPI:
     return app
 
 
-def serve_runs(pages: RunPages, *, host: str, port: int, ready: Callable[[str], None]) -> None:
-    """Serve the pages alone until interrupted; raises `UsageError` when the port is taken."""
+def serve_runs(
+    pages: RunPages,
+    listener: socket.socket,
+    *,
+    host: str,
+    ready: Callable[[str], None],
+    over: Callable[[], bool],
+) -> None:
+    """Serve the pages alone, on a listener that stays open.
+
+    Who asks between the end and whatever serves next waits, and is not refused.
+
+    Args:
+        pages: What to serve.
+        listener: Of `listen`.
+        host: The name or address that it was bound to.
+        ready: Told the address before the first request is served.
+        over: Asked once a second whether to end.
+    """
     app = runs_application(pages, names=names_of(host))
-    serve_alone(app, listen(host, port), ready=ready)
+    serve_alone(app, listener.dup(), ready=ready, over=over)

@@ -16,7 +16,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from app.gateway.agreement import has_agreement, mount_agreement
-from app.gateway.alone import listen, names_of
+from app.gateway.alone import names_of
 from app.gateway.api import api
 from app.gateway.assets import assets, serve_assets
 from app.gateway.doors import Doors
@@ -117,9 +117,9 @@ class Server(uvicorn.Server):
 
 def serve(
     opened: Opened,
+    listener: socket.socket,
     *,
-    host: str = "127.0.0.1",
-    port: int = 8080,
+    host: str,
     no_browser: bool = False,
     ready: Callable[[Address], None] | None = None,
     runs: RunPages | None = None,
@@ -129,17 +129,16 @@ def serve(
 
     Args:
         opened: What to show.
-        host: Address to bind; loopback unless the user says otherwise.
-        port: Port to bind; 0 takes a free one.
+        listener: Of `alone.listen`; closed at the end.
+        host: The name or address that it was bound to.
         no_browser: Do not open a browser.
         ready: Called once with the address, before the first request is served.
         runs: Pages about the runs of a folder, beside the inspector and opened first.
         beside: Re-evaluations, whose rankers count on the agreement page too.
 
     Raises:
-        C2NavError: When the source's first entry cannot be opened, or the port is taken.
+        C2NavError: When the source's first entry cannot be opened.
     """
-    listener = listen(host, port)
     address = Address(host, listener.getsockname()[1])
     first_page = FirstPage(asked_within_s=2.0, stands_within_s=30.0, sent_within_s=10.0)
     session = Session(opened, first_page=first_page)
