@@ -108,6 +108,23 @@ class Desk:
         """Tell the person something once."""
         self.change(notice=Notice(text, fault, self.snapshot.notice.serial + 1))
 
+    def stumbled(self, problem: str) -> None:
+        """A task ended in a way that nobody foresaw: nothing on the page waits for it any longer.
+
+        Which task it was is not known, so all that wait are let go; an answer that comes after
+        all is taken as one that was cancelled.
+        """
+        self.asked.clear()
+        self.out.clear()
+        self.commit_when_answered = False
+        turning = {
+            name: replace(state, stage="ready")
+            for name, state in self.snapshot.turning.items()
+            if state.stage != "measuring"
+        }
+        self.change(working="", asking=None, playing="", turning=turning)
+        self.say(problem, fault=True)
+
     def reopen(self, choice: Choice) -> None:
         """Open another entry, variant or ranker in place of what is open."""
         for run in self.runs.values():

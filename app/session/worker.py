@@ -196,7 +196,7 @@ class Session:
         except Exception as error:
             log.exception("a background task failed")
             problem = f"{type(error).__name__}: {error}"
-            return lambda desk: desk.say(problem, fault=True)
+            return lambda desk: desk.stumbled(problem)
 
 
 def _begin(desk: Desk) -> None:

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import pytest
 
@@ -10,6 +11,9 @@ from app.session.branches import Origin
 from app.session.snapshot import Snapshot
 from app.session.worker import Session, StaleCommand
 from c2nav_engine.contract.outcome import Abstention, Ordering
+from c2nav_engine.contract.prompt import Ranked
+from c2nav_engine.contract.question import Question
+from c2nav_engine.geometry import Pose
 from tests.helpers import stage
 from tests.helpers.watched import Watched
 
@@ -208,3 +212,29 @@ def test_every_picture_of_the_state_is_in_the_album(recorded: Watched):
             if candidate.picture is not None:
                 found = recorded.session.album.get(candidate.picture.sha256)
                 assert found == candidate.picture
+
+
+def test_a_ranker_that_breaks_unforeseen_can_be_asked_again():
+    broken = [True]
+
+    def answer(question: Question, _: Pose) -> Ranked:
+        if broken:
+            broken.clear()
+            raise ZeroDivisionError("nobody foresaw this")
+        return stage.scripted_answer(question)
+
+    recorded = stage.opened_live()
+    opened = replace(
+        recorded,
+        open=lambda choice: replace(recorded.open(choice), run=stage.live_run(answer=answer)),
+    )
+    session = Session(opened)
+    watched = Watched(session)
+    try:
+        stumbled = watched.until(lambda s: s.notice.fault)
+        assert "nobody foresaw this" in stumbled.notice.text
+        assert stumbled.asking is None
+        watched.do(c.AskAgain())
+        watched.until(proposed(0))
+    finally:
+        session.close()

@@ -17,7 +17,7 @@ from app.session.timeline import timeline_of
 from app.session.turning_state import Turning
 from app.session.worker import Session
 from c2nav_engine.experiments.spec import Setting
-from c2nav_engine.experiments.turning.flips import TURNING, Budget
+from c2nav_engine.experiments.turning.flips import TURNING, Budget, Flip
 from tests.helpers import stage
 from tests.helpers.planted import SHORT, decision_of, flawless
 
@@ -103,6 +103,26 @@ def test_a_failure_is_measured_tried_cancelled_taken_up_again_and_opened(session
     again = until(session, lambda s: s.branch.parent != "")
     assert again.branch.branch_id == branch.branch_id
     assert len(again.branches) == 2
+
+
+def test_a_search_that_breaks_unforeseen_can_be_taken_up_again(session, monkeypatch):
+    session.dispatch(c.MeasureTurning())
+    ready = here(until(session, lambda s: s.turning_here is not None and s.turning_here.left != ()))
+
+    def broken(*_: object, **__: object) -> Iterator[Flip]:
+        raise ZeroDivisionError("nobody foresaw this")
+        yield
+
+    with monkeypatch.context() as patch:
+        patch.setattr(searching, "flips_of", broken)
+        session.dispatch(c.TryAnswers())
+        stumbled = until(session, lambda s: s.notice.fault)
+    assert "nobody foresaw this" in stumbled.notice.text
+    assert here(stumbled) == ready
+    session.dispatch(c.TryAnswers())
+    until(session, lambda s: here(s).flips != ())
+    session.dispatch(c.CancelTrying())
+    until(session, lambda s: here(s).stage == "ready")
 
 
 def test_nothing_is_shown_to_who_judges_blind(session):
