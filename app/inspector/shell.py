@@ -168,7 +168,7 @@ class Shell:
             self._changed.wait()
             self._settle()
             if not self._closing:
-                self._draw(self._session.snapshot)
+                self.draw(self._session.snapshot)
 
     def _settle(self) -> None:
         """Wait until changes have come to rest, and take note of them."""
@@ -186,7 +186,8 @@ class Shell:
         self._mapped.set()
         self._changed.set()
 
-    def _draw(self, snapshot: Snapshot) -> None:
+    def draw(self, snapshot: Snapshot) -> None:
+        """Bring docks and map up to a snapshot; both wait for nothing but the page."""
         for update in self._updates:
             self._guarded(update, snapshot)
         if not self._mapped.is_set():

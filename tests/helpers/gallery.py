@@ -2,6 +2,8 @@
 
     python -m tests.helpers.gallery TRACE --scenes DIR --out docs/gallery
 
+The trace is of a failure, so that there are suspects to show.
+
 `tests/browser/test_gallery.py` walks the same views and measures their layout.
 """
 
@@ -138,6 +140,7 @@ def main() -> None:
             visit(browser, url, size=size, dark=dark) as seen,
         ):
             seen.until_node("/scene/section")
+            seen.until("s.timeline.regret.length")
             for name, arrange in shots(seen).items():
                 theme = "dark" if dark else "light"
                 if given.only and name not in given.only.split(","):

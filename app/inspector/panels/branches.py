@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import viser
 from markupsafe import Markup
 
@@ -24,28 +26,34 @@ def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:
     def update(snapshot: Snapshot) -> None:
         titles = {b.branch_id: f"{b.branch_id} · {_title(b)}" for b in snapshot.branches}
         picker.show(titles, snapshot.branch.branch_id, least=2)
-        block.show(_block(snapshot, costs))
+        block.show(_block(snapshot, costs.of(snapshot.branches)))
 
     return update
 
 
 class Costs:
-    """What each branch took, counted again only when the branch has grown."""
+    """What each branch took, counted again only when the branch has grown.
+
+    A branch holds all its pictures, so those of an episode that was left are let go.
+    """
 
     def __init__(self) -> None:
         """Know none yet."""
         self._known: dict[str, tuple[Branch, Cost]] = {}
 
-    def of(self, branch: Branch) -> Cost:
-        """The cost of a branch."""
+    def of(self, branches: Sequence[Branch]) -> Mapping[str, Cost]:
+        """The cost of each of the branches that there are now, by id."""
+        self._known = {branch.branch_id: self._counted(branch) for branch in branches}
+        return {branch_id: cost for branch_id, (_, cost) in self._known.items()}
+
+    def _counted(self, branch: Branch) -> tuple[Branch, Cost]:
         known = self._known.get(branch.branch_id)
-        if known is None or known[0] is not branch:
-            known = (branch, cost_of(decisions_of(branch.exchanges, branch.pending)))
-            self._known[branch.branch_id] = known
-        return known[1]
+        if known is not None and known[0] is branch:
+            return known
+        return branch, cost_of(decisions_of(branch.exchanges, branch.pending))
 
 
-def _block(snapshot: Snapshot, costs: Costs) -> str:
+def _block(snapshot: Snapshot, costs: Mapping[str, Cost]) -> str:
     roots = [branch for branch in snapshot.branches if not branch.parent]
     rows = m.join(_rows(snapshot, root, costs) for root in roots)
     return m.padded(
@@ -55,9 +63,11 @@ def _block(snapshot: Snapshot, costs: Costs) -> str:
     )
 
 
-def _rows(snapshot: Snapshot, branch: Branch, costs: Costs, *, depth: int = 0) -> Markup:
+def _rows(
+    snapshot: Snapshot, branch: Branch, costs: Mapping[str, Cost], *, depth: int = 0
+) -> Markup:
     here = branch.branch_id == snapshot.branch.branch_id
-    cost = costs.of(branch)
+    cost = costs[branch.branch_id]
     spent = ", ".join(
         [plural(cost.decisions, "decision"), plural(cost.queries, "query"), seconds(cost.seconds)]
     )
