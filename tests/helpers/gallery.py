@@ -77,6 +77,17 @@ def first(seen: Visit, lane: int, *, after: int = 0) -> int:
     return found[0] if found else marks[-1]["decision"]
 
 
+def costliest(seen: Visit, *, otherwise: int) -> int:
+    """The decision with the greatest regret."""
+    regrets = seen.state()["timeline"]["regret"]
+    return max(regrets, key=lambda each: each["m"])["decision"] if regrets else otherwise
+
+
+_OTHERS = "c2nav.state.decision.cards.filter((card) => card.letter && card.rank !== 1)"
+SECOND = f"{_OTHERS}.sort((a, b) => a.rank - b.rank)[0].key"
+"""What came second, or was offered without a rank, as a script."""
+
+
 def shots(seen: Visit) -> dict[str, Arrange]:
     """Name → how to get there, in an order that needs no way back."""
     marks = seen.state()["timeline"]["marks"]
@@ -105,12 +116,12 @@ def shots(seen: Visit) -> dict[str, Arrange]:
         "ego": send("'camera', {mode: 'ego'}"),
         "review": then(
             send("'camera', {mode: 'free'}"),
-            go(election),
+            go(costliest(seen, otherwise=election)),
             tab("Decision", "Review"),
             key("w"),
-            key("Shift+Digit2"),
-            send("'tag', {value: 'wrong object'}"),
-            send("'remark', {text: 'The folding door lies on the left.'}"),
+            send(f"'better', {{key: {SECOND}}}"),
+            send("'tag', {value: 'not visible'}"),
+            send("'remark', {text: 'What the leg names shows at the edge of the other view.'}"),
             send("'leg_end', {leg: 0, step: c2nav.state.place.step}"),
             until("s.judgement.better && s.judgement.note && s.timeline.leg_ends.length"),
         ),

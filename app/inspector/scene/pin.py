@@ -37,7 +37,8 @@ class Pin:
             self._scene.add_icosphere(
                 "/asked/ball", radius=0.09, color=BLUE, position=place.point_m, cast_shadow=False
             ),
+            # High enough to stand clear of the goal's name, where the goal was asked for.
             self._scene.add_label(
-                "/asked/name", "asked", position=(x, y + 0.3, z), anchor="center-center"
+                "/asked/name", "asked", position=(x, y + 0.6, z), anchor="center-center"
             ),
         ]
