@@ -51,7 +51,7 @@ BLOCKS = [
     decision._below,
     sketch._block,
     ladder._block,
-    lambda snapshot: branches._block(snapshot, branches.Costs()),
+    lambda snapshot: branches._block(snapshot, branches.Costs().of(snapshot.branches)),
     review._block,
     run._block,
     export._block,
