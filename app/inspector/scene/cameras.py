@@ -15,11 +15,14 @@ _PITCH = math.radians(66.0)
 """Of the first view: steep enough to look over walls, flat enough to read furniture."""
 
 _FOV = math.radians(50.0)
-_USED = 0.7
-"""Share of the half picture that the framed points may fill: the strip covers the top."""
+_USED = 0.75
+"""Share of the uncovered picture that the framed points may fill: views stand around the body."""
 
-_LIFTED = 0.12
-"""Share of the half picture by which the aim is lifted."""
+_COVERED_MOST = 0.4
+"""However long the instruction, the map keeps more than half of its height."""
+
+_ROW_PX, _LETTER_PX, _BELOW_PX = 26, 10, 94
+"""Of the strip: height of a row, width of a letter at most, its margins with the line below it."""
 
 _NEAREST_M = 6.0
 
@@ -59,7 +62,9 @@ class Cameras:
             camera = client.camera
             width_px = uncovered_px(camera.image_width, self._covered_px)
             camera.fov = _FOV
-            _look(client, *overview(framed_points(snapshot), width_px / camera.image_height))
+            covered = covered_share(snapshot, width_px, camera.image_height)
+            aspect = width_px / camera.image_height
+            _look(client, *overview(framed_points(snapshot), aspect, covered=covered))
         else:
             _place(client, snapshot, snapshot.view.camera)
 
@@ -80,23 +85,34 @@ def framed_points(snapshot: Snapshot) -> list[Point]:
     return points
 
 
-def overview(points_m: list[Point], aspect: float = 1.0) -> tuple[Point, Point]:
+def covered_share(snapshot: Snapshot, width_px: int, height_px: int) -> float:
+    """About which share of the map's height the instruction and the line below it cover."""
+    letters = len(snapshot.story.header.episode.instruction)
+    rows = math.ceil(letters * _LETTER_PX / width_px)
+    return min(_COVERED_MOST, (rows * _ROW_PX + _BELOW_PX) / height_px)
+
+
+def overview(
+    points_m: list[Point], aspect: float = 1.0, *, covered: float = 0.12
+) -> tuple[Point, Point]:
     """Camera position and target from which all points are seen, looking along −Z and down.
 
     Args:
         points_m: What must be in the picture.
         aspect: Width over height of the part of the page that no dock covers.
+        covered: Share of the height that is covered from above.
     """
     points = np.array(points_m)
     target = (points.min(axis=0) + points.max(axis=0)) / 2.0
     x, y, z = (points - target).T
     sin, cos = math.sin(_PITCH), math.cos(_PITCH)
     up, nearer = y * cos - z * sin, y * sin + z * cos
-    tall = math.tan(_FOV / 2.0) * _USED
-    needed = np.maximum(np.abs(x) / (tall * aspect), np.abs(up) / tall) + nearer
+    half = math.tan(_FOV / 2.0)
+    wide, tall = half * aspect * _USED, half * (1.0 - covered) * _USED
+    needed = np.maximum(np.abs(x) / wide, np.abs(up) / tall) + nearer
     distance_m = max(float(needed.max()), _NEAREST_M)
-    # The strip lies over the top: what is framed moves down by lifting the aim.
-    target = target + np.array([0.0, cos, -sin]) * (_LIFTED * distance_m * math.tan(_FOV / 2.0))
+    # What is framed moves down by lifting the aim.
+    target = target + np.array([0.0, cos, -sin]) * (covered * distance_m * half)
     eye = target + np.array([0.0, sin, cos]) * distance_m
     return _point(eye), _point(target)
 
