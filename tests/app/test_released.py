@@ -10,12 +10,14 @@ from dataclasses import replace
 from app.inspector.shell import Shell
 from app.session import commands as c
 from app.session.branches import Branch
-from app.session.opened import Choice, Opening
+from app.session.opened import Choice, Entry, Opening
 from app.session.snapshot import Snapshot
 from app.session.worker import Session
 from tests.helpers import stage
 
 PATIENCE_S = 20.0
+LEFT, NEXT = "an episode that is left", "the next one"
+"""Names that no other test of the same process holds on to."""
 
 
 def until(session: Session, holds: Callable[[Snapshot], bool]) -> None:
@@ -42,7 +44,13 @@ def held(episode_id: str) -> int:
 
 
 def test_nothing_of_an_episode_that_was_left_stays_in_memory():
-    session = Session(replace(stage.opened_live(), open=opened_as))
+    opened = replace(
+        stage.opened_live(),
+        entries=(Entry(LEFT, "left"), Entry(NEXT, "next")),
+        first=Choice(LEFT, "full", "scripted"),
+        open=opened_as,
+    )
+    session = Session(opened)
     shell = Shell(session)
     session.start()
     try:
@@ -52,12 +60,12 @@ def test_nothing_of_an_episode_that_was_left_stays_in_memory():
             made = len(session.snapshot.story.decisions)
             session.dispatch(c.Step())
             until(session, lambda s, made=made: len(s.story.decisions) > made)
-        assert held("1") > 0
-        session.dispatch(c.Open(entry="2"))
-        until(session, lambda s: s.story.header.episode.episode_id == "2")
+        assert held(LEFT) > 0
+        session.dispatch(c.Open(entry=NEXT))
+        until(session, lambda s: s.story.header.episode.episode_id == NEXT)
         until(session, lambda s: s.proposal is not None)
         shell.draw(session.snapshot)
-        until(session, lambda _: held("1") == 0)
+        until(session, lambda _: held(LEFT) == 0)
     finally:
         session.close()
         shell.close()
