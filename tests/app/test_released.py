@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import gc
-import time
+import threading
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -16,16 +16,24 @@ from app.session.worker import Session
 from tests.helpers import stage
 
 PATIENCE_S = 20.0
+TRIES = 20
 LEFT, NEXT = "an episode that is left", "the next one"
 """Names that no other test of the same process holds on to."""
 
 
-def until(session: Session, holds: Callable[[Snapshot], bool]) -> None:
-    """Wait without keeping any snapshot."""
-    give_up = time.monotonic() + PATIENCE_S
-    while not holds(session.snapshot):
-        assert time.monotonic() < give_up
-        time.sleep(0.01)
+class Waiting:
+    """Waits for snapshots without keeping any."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._changed = threading.Event()
+        session.subscribe(lambda _: self._changed.set())
+
+    def until(self, holds: Callable[[Snapshot], bool]) -> None:
+        """Return once something holds."""
+        while not holds(self._session.snapshot):
+            assert self._changed.wait(PATIENCE_S)
+            self._changed.clear()
 
 
 def opened_as(choice: Choice) -> Opening:
@@ -43,6 +51,12 @@ def held(episode_id: str) -> int:
     return sum(branch.header.episode.episode_id == episode_id for branch in found)
 
 
+def drawn_and_held(shell: Shell, session: Session) -> int:
+    """Draw what is open now, and count what is held of what was left."""
+    shell.draw(session.snapshot)
+    return held(LEFT)
+
+
 def test_nothing_of_an_episode_that_was_left_stays_in_memory():
     opened = replace(
         stage.opened_live(),
@@ -51,21 +65,22 @@ def test_nothing_of_an_episode_that_was_left_stays_in_memory():
         open=opened_as,
     )
     session = Session(opened)
+    waiting = Waiting(session)
     shell = Shell(session)
     session.start()
     try:
         for _ in range(3):
-            until(session, lambda s: s.proposal is not None)
+            waiting.until(lambda s: s.proposal is not None)
             shell.draw(session.snapshot)
             made = len(session.snapshot.story.decisions)
             session.dispatch(c.Step())
-            until(session, lambda s, made=made: len(s.story.decisions) > made)
+            waiting.until(lambda s, made=made: len(s.story.decisions) > made)
         assert held(LEFT) > 0
         session.dispatch(c.Open(entry=NEXT))
-        until(session, lambda s: s.story.header.episode.episode_id == NEXT)
-        until(session, lambda s: s.proposal is not None)
-        shell.draw(session.snapshot)
-        until(session, lambda _: held(LEFT) == 0)
+        waiting.until(lambda s: s.story.header.episode.episode_id == NEXT)
+        waiting.until(lambda s: s.proposal is not None)
+        # The shell's own thread may still be drawing what was left: it is drawn over, then.
+        assert any(drawn_and_held(shell, session) == 0 for _ in range(TRIES))
     finally:
         session.close()
         shell.close()

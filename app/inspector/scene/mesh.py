@@ -53,7 +53,7 @@ class Mesh:
         scene: viser.SceneApi,
         fetch: Callable[[], Scene | None],
         together: Callable[[], AbstractContextManager[None]],
-        sent: Callable[[], None] = lambda: None,
+        sent: Callable[[], None],
     ) -> None:
         """Draw nothing yet.
 

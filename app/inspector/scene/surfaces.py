@@ -35,6 +35,10 @@ class _Layout:
         kinds = ((self.textured, _UV, 2), (self.coloured, _COLOUR, 4), (self.lit, _LIGHT, 1))
         return np.array([tol for held, tol, count in kinds if held for _ in range(count)], "f4")
 
+    @property
+    def width(self) -> int:
+        return len(self.tolerances)
+
     def values(
         self,
         mesh: Scene,
@@ -57,7 +61,7 @@ class _Layout:
         values: Float32[np.ndarray, "m values"],
         material: Material,
     ) -> Surface:
-        uvs, colours, light = np.split(values, [2 * self.textured, values.shape[1] - self.lit], 1)
+        uvs, colours, light = np.split(values, [2 * self.textured, self.width - self.lit], 1)
         return Surface(
             positions_m=positions_m,
             triangles=triangles.astype(np.uint32),
@@ -93,19 +97,19 @@ def surface_below(
     single = whole & ~shared
     soup = cut_below(corners_m[crossing], values[crossing], height_m)
     used, triangles = _renumbered(corners[shared], len(used))
-    heaps_m = np.concatenate([corners_m[single], soup.corners_m])
-    positions_m = np.concatenate([vertices_m[used], heaps_m.reshape(-1, 3)])
+    heap_m = np.concatenate([corners_m[single], soup.corners_m])
+    heap_values = np.concatenate([values[single], soup.extra])
+    positions_m = np.concatenate([vertices_m[used], heap_m.reshape(-1, 3)])
     if not len(positions_m):
         return None
     heap = np.arange(len(used), len(positions_m)).reshape(-1, 3)
     triangles = np.concatenate([triangles, heap])
     topmost_first = np.argsort(-positions_m[triangles][:, :, 1].max(axis=1), kind="stable")
-    heaps = np.concatenate([values[single], soup.extra])
-    heaps = heaps.reshape(3 * len(heaps), heaps.shape[2])
+    heap_values = heap_values.reshape(3 * len(heap_m), layout.width)
     return layout.surface(
         positions_m.astype(np.float32),
         triangles[topmost_first],
-        np.concatenate([agreed[used], heaps]).astype(np.float32),
+        np.concatenate([agreed[used], heap_values]).astype(np.float32),
         look,
     )
 
