@@ -145,11 +145,13 @@ class _Flat:
         depth: Pinhole,
         near_m: float,
         far_m: float,
+        depth_stride: int = 1,
     ) -> list[Image]:
         """Grey, three metres away."""
         del near_m, far_m
         colour = np.full((rgb.height_px, rgb.width_px, 3), 128, np.uint8)
-        depth_m = np.full((depth.height_px, depth.width_px), 3.0, np.float32)
+        whole_m = np.full((depth.height_px, depth.width_px), 3.0, np.float32)
+        depth_m = whole_m[::depth_stride, ::depth_stride]
         return [Image(colour, depth_m, matrix) for matrix in world_from_cameras]
 
 

@@ -18,7 +18,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -81,12 +81,17 @@ def side_by_side(above: Timed, below: Timed, *, rounds: int) -> Ratio:
 
 def fan_over_casts(scene: Path | Scene, *, rounds: int = 24) -> float:
     """Three RGB-D views over the bare casts of the same rays."""
-    return over_casts(_loaded(scene), SensorRing(VLNCE).fan, rounds=rounds).value
+    return over_casts(_loaded(scene), whole(SensorRing(VLNCE).fan), rounds=rounds).value
 
 
 def ring_over_casts(scene: Path | Scene, *, rounds: int = 12) -> float:
     """Twelve RGB-D views over the bare casts of the same rays."""
-    return over_casts(_loaded(scene), SensorRing(VLNCE).ring, rounds=rounds).value
+    return over_casts(_loaded(scene), whole(SensorRing(VLNCE).ring), rounds=rounds).value
+
+
+def whole(cameras: Sequence[CameraOffset]) -> list[CameraOffset]:
+    """The same cameras with every pixel of their depth pictures sensed."""
+    return [replace(camera, depth_stride=1) for camera in cameras]
 
 
 def over_casts(scene: Scene, cameras: Sequence[CameraOffset], *, rounds: int) -> Ratio:
@@ -259,8 +264,8 @@ def _against_ours(make: Callable[[Path], Renderer], scene: Path) -> Ratio:
     place = open_places(ours, loaded, VLNCE)[0]
     theirs = make(scene)
     return side_by_side(
-        lambda _: ring.capture(theirs, place, ring.fan),
-        lambda _: ring.capture(ours, place, ring.fan),
+        lambda _: ring.capture(theirs, place, whole(ring.fan)),
+        lambda _: ring.capture(ours, place, whole(ring.fan)),
         rounds=2 * PLACES,
     )
 
@@ -289,9 +294,10 @@ class _Pyrender:
         depth: Any,
         near_m: float,
         far_m: float,
+        depth_stride: int = 1,
     ) -> list[Any]:
-        """RGB at one size and depth at the other, as ours."""
-        del near_m, far_m
+        """RGB at one size and whole depth at the other, as ours."""
+        del near_m, far_m, depth_stride
         depth_only = self._pyrender.RenderFlags.DEPTH_ONLY
         return [
             (self._view(matrix, rgb, 0), self._view(matrix, depth, depth_only))

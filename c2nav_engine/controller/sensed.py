@@ -21,11 +21,11 @@ class Action(enum.StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class DepthStats:
-    """What the controller keeps of one depth picture.
+    """What the controller keeps of one depth picture, over the pixels that were sensed.
 
     Attributes:
         median_m: Median of the valid depths; 0.0 without any.
-        holes: Fraction of pixels without a return, in [0, 1].
+        holes: Fraction of depths without a return, in [0, 1].
     """
 
     median_m: float

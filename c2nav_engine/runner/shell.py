@@ -22,13 +22,9 @@ from c2nav_engine.runner.exchange import Truth
 from c2nav_engine.sensing.depth import depth_facts, depth_points
 from c2nav_engine.sensing.encode import depth_png, encode, sectors, thumbnail
 from c2nav_engine.sensing.renderer import Image, Renderer
-from c2nav_engine.sensing.ring import CameraOffset, SensorRing
+from c2nav_engine.sensing.ring import DEPTH_STRIDE, CameraOffset, SensorRing
 from c2nav_engine.world.kinematics import Body
 from c2nav_engine.world.surface import Surface
-
-DEPTH_STRIDE = 4
-"""Every n-th row and column of a depth picture enters the free-space memory [C]."""
-
 
 Depth = Float32[np.ndarray, "rows columns"]
 
@@ -164,8 +160,9 @@ class LiveShell:
     def _remember(self, camera: CameraOffset, depth_m: Depth) -> None:
         # Points are placed where the robot believes it is: the memory lives in odometry.
         profile = self._profile
+        thinned = DEPTH_STRIDE // camera.depth_stride
         points_m = depth_points(
-            depth_m,
+            depth_m[::thinned, ::thinned],
             profile.depth,
             world_from_camera(
                 self.odometry, height_m=profile.camera_height_m, offset_rad=camera.offset_rad

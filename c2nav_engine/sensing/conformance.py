@@ -130,6 +130,23 @@ def check_same_pose_same_bytes(make: Make, tolerance: Tolerance) -> None:
         _require(np.array_equal(image.world_from_camera, matrix), "the pose that was asked for")
 
 
+def check_a_depth_grid_is_the_pictures(make: Make, tolerance: Tolerance) -> None:
+    """Depth at a stride is the whole picture's, row by row and column by column; colour stays."""
+    del tolerance
+    renderer = make(Room().scene())
+    matrix = world_from_camera(ORIGIN.turned(0.4), height_m=EYE_M)
+    for rgb, depth in ((RGB, DEPTH), (DEPTH, DEPTH)):
+        whole, thinned = (
+            renderer.render(
+                [matrix], rgb=rgb, depth=depth, near_m=0.0, far_m=100.0, depth_stride=stride
+            )[0]
+            for stride in (1, 3)
+        )
+        same = np.array_equal(thinned.depth_m, whole.depth_m[::3, ::3])
+        _require(same, "a depth grid with the whole picture's depths")
+        _require(np.array_equal(thinned.rgb, whole.rgb), "the same colours beside a depth grid")
+
+
 def check_sizes_and_empty_calls(make: Make, tolerance: Tolerance) -> None:
     """Pictures have their pinholes' sizes, equal pinholes included; no camera, no picture."""
     del tolerance
@@ -149,6 +166,7 @@ CHECKS: tuple[Callable[[Make, Tolerance], None], ...] = (
     check_texture_stands_upright,
     check_range_leaves_holes,
     check_same_pose_same_bytes,
+    check_a_depth_grid_is_the_pictures,
     check_sizes_and_empty_calls,
 )
 

@@ -34,13 +34,12 @@ def depth_points(
     far_m: float,
     stride: int = 1,
 ) -> Float[np.ndarray, "points 3"]:
-    """World points of the valid pixels, taking every `stride`-th row and column.
+    """World points of the valid depths at every `stride`-th row and column of a pinhole.
 
     Rays run through pixel centres, so a noiseless point lies on the surface that was rendered.
     """
-    depths_m = depth_m[::stride, ::stride]
-    valid = valid_depth(depths_m, near_m=near_m, far_m=far_m)
+    valid = valid_depth(depth_m, near_m=near_m, far_m=far_m)
     # Directions have unit length along the axis: scaled by depth, they end at the hit.
     rays = pinhole.ray_directions()[::stride, ::stride][valid]
-    points_m = rays * depths_m[valid][:, None].astype(np.float64)
+    points_m = rays * depth_m[valid][:, None].astype(np.float64)
     return points_m @ world_from_camera[:3, :3].T + world_from_camera[:3, 3]

@@ -83,7 +83,7 @@ class EmbreeRenderer:
         threads = threads or granted_threads()
         self.caster = Caster(scene, threads=threads)
         self._pool = ThreadPoolExecutor(threads, "render")
-        self._plans: dict[tuple[Pinhole, Pinhole], RayPlan] = {}
+        self._plans: dict[tuple[Pinhole, Pinhole, int], RayPlan] = {}
 
     @property
     def name(self) -> str:
@@ -98,16 +98,18 @@ class EmbreeRenderer:
         depth: Pinhole,
         near_m: float,
         far_m: float,
+        depth_stride: int = 1,
     ) -> list[Image]:
         """RGB and depth for several cameras in one cast; equal pinholes share their rays."""
         views = len(world_from_cameras)
         if not views:
             return []
-        hits = self._cast(self.rays(world_from_cameras, rgb=rgb, depth=depth))
+        plan = self._plan(rgb, depth, depth_stride)
+        hits = self._cast(self._rays(world_from_cameras, plan))
         pictures = np.empty((views, rgb.height_px, rgb.width_px, 3), np.uint8)
-        depths_m = np.empty((views, depth.height_px, depth.width_px), np.float32)
+        grid = -(-depth.height_px // depth_stride), -(-depth.width_px // depth_stride)
+        depths_m = np.empty((views, *grid), np.float32)
         look = self._look(rgb)
-        plan = self._plan(rgb, depth)
 
         def paint(chunk: tuple[int, int]) -> None:
             view, start = chunk
@@ -137,8 +139,13 @@ class EmbreeRenderer:
         rgb: Pinhole,
         depth: Pinhole,
     ) -> Float32[np.ndarray, "rays 6"]:
-        """The rays of `render`, in the order in which it casts them."""
-        directions = self._plan(rgb, depth).directions
+        """The rays of `render` with whole depth pictures, in the order in which it casts them."""
+        return self._rays(world_from_cameras, self._plan(rgb, depth))
+
+    def _rays(
+        self, world_from_cameras: Sequence[Float[np.ndarray, "4 4"]], plan: RayPlan
+    ) -> Float32[np.ndarray, "rays 6"]:
+        directions = plan.directions
         count = len(directions)
         rays = np.empty((count * len(world_from_cameras), 6), np.float32)
 
@@ -171,10 +178,11 @@ class EmbreeRenderer:
         units = directions / np.maximum(lengths_m, 1e-12)[:, None]
         return self.cast(a_m, units).t_hit >= lengths_m - margin_m
 
-    def _plan(self, rgb: Pinhole, depth: Pinhole) -> RayPlan:
-        if (rgb, depth) not in self._plans:
-            self._plans[rgb, depth] = ray_plan(rgb, depth)
-        return self._plans[rgb, depth]
+    def _plan(self, rgb: Pinhole, depth: Pinhole, depth_stride: int = 1) -> RayPlan:
+        asked = rgb, depth, depth_stride
+        if asked not in self._plans:
+            self._plans[asked] = ray_plan(*asked)
+        return self._plans[asked]
 
     def _look(self, rgb: Pinhole) -> Look:
         light = self._light

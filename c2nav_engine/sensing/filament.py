@@ -72,6 +72,7 @@ class FilamentRenderer:
         depth: Pinhole,
         near_m: float,
         far_m: float,
+        depth_stride: int = 1,
     ) -> list[Image]:
         """RGB and depth, camera by camera; raises `MissingExtra` without a Vulkan driver."""
         if not world_from_cameras:
@@ -80,7 +81,9 @@ class FilamentRenderer:
         return [
             Image(
                 rgb=stage.rgb(matrix, rgb),
-                depth_m=_in_range(stage.depth_m(matrix, depth), near_m, far_m),
+                depth_m=_in_range(
+                    stage.depth_m(matrix, depth)[::depth_stride, ::depth_stride], near_m, far_m
+                ),
                 world_from_camera=np.asarray(matrix, np.float64),
             )
             for matrix in world_from_cameras

@@ -22,7 +22,7 @@ class RayPlan(NamedTuple):
     Attributes:
         directions: In the camera frame, with z = −1.
         rgb_pixels: Index of the RGB pixel that each ray fills, −1 for none.
-        depth_pixels: Index of the depth pixel, −1 for none.
+        depth_pixels: Index of the pixel in the depth grid, −1 for none.
     """
 
     directions: Float32[np.ndarray, "rays 3"]
@@ -30,13 +30,20 @@ class RayPlan(NamedTuple):
     depth_pixels: Int32[np.ndarray, " rays"]
 
 
-def ray_plan(rgb: Pinhole, depth: Pinhole) -> RayPlan:
-    """Rays through the pixel centres of both pinholes; equal pinholes share theirs."""
+def ray_plan(rgb: Pinhole, depth: Pinhole, depth_stride: int = 1) -> RayPlan:
+    """Rays through the pixel centres of both pinholes; equal pinholes share theirs.
+
+    Of the depth picture only every `depth_stride`-th row and column are cast.
+    """
     directions = rgb.ray_directions().reshape(-1, 3)
     rgb_pixels = np.arange(len(directions))
-    depth_pixels = rgb_pixels
-    if depth != rgb:
-        others = depth.ray_directions().reshape(-1, 3)
+    if depth == rgb:
+        depth_pixels = np.full((rgb.height_px, rgb.width_px), -1)
+        grid = depth_pixels[::depth_stride, ::depth_stride]
+        grid[:] = np.arange(grid.size).reshape(grid.shape)
+        depth_pixels = depth_pixels.reshape(-1)
+    else:
+        others = depth.ray_directions()[::depth_stride, ::depth_stride].reshape(-1, 3)
         depth_pixels = np.concatenate([np.full(len(directions), -1), np.arange(len(others))])
         rgb_pixels = np.concatenate([rgb_pixels, np.full(len(others), -1)])
         directions = np.concatenate([directions, others])

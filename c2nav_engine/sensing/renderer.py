@@ -18,8 +18,8 @@ class Image:
 
     Attributes:
         rgb: 8-bit colour at the RGB pinhole's size.
-        depth_m: Metric depth along the optical axis at the depth pinhole's size; 0 where nothing
-            was hit or the hit lies outside the sensor's range.
+        depth_m: Metric depth along the optical axis at every n-th row and column of the depth
+            pinhole, as asked; 0 where nothing was hit or the hit lies outside the sensor's range.
         world_from_camera: Where it was taken.
     """
 
@@ -45,6 +45,11 @@ class Renderer(Protocol):
         depth: Pinhole,
         near_m: float,
         far_m: float,
+        depth_stride: int = 1,
     ) -> list[Image]:
-        """RGB and depth for several cameras in one call."""
+        """RGB and depth for several cameras in one call.
+
+        Depths at a stride are those of the whole picture there: only every `depth_stride`-th row
+        and column of it, from the first on, are asked for.
+        """
         ...

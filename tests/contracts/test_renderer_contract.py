@@ -45,10 +45,16 @@ class Spoiled:
         depth: Pinhole,
         near_m: float,
         far_m: float,
+        depth_stride: int = 1,
     ) -> list[Image]:
         self._calls += 1
         images = self._inner.render(
-            world_from_cameras, rgb=rgb, depth=depth, near_m=near_m, far_m=far_m
+            world_from_cameras,
+            rgb=rgb,
+            depth=depth,
+            near_m=near_m,
+            far_m=far_m,
+            depth_stride=depth_stride,
         )
         return [self._spoil(image, self._calls) for image in images]
 
@@ -59,6 +65,12 @@ def mirrored(image, _):
 
 def upside_down(image, _):
     return Image(image.rgb[::-1].copy(), image.depth_m, image.world_from_camera)
+
+
+def one_row_lower_at_a_stride(image, _):
+    whole = image.depth_m.shape == (conformance.DEPTH.height_px, conformance.DEPTH.width_px)
+    depth_m = image.depth_m if whole else np.roll(image.depth_m, 1, axis=0)
+    return Image(image.rgb, depth_m, image.world_from_camera)
 
 
 def euclidean_depth(image, _):
@@ -80,7 +92,14 @@ def never_twice_the_same(image, calls):
 
 @pytest.mark.parametrize(
     "spoil",
-    [mirrored, upside_down, euclidean_depth, far_instead_of_holes, never_twice_the_same],
+    [
+        mirrored,
+        upside_down,
+        euclidean_depth,
+        far_instead_of_holes,
+        never_twice_the_same,
+        one_row_lower_at_a_stride,
+    ],
 )
 def test_the_kit_notices(spoil):
     with pytest.raises(InternalError, match="renderer conformance: expected"):

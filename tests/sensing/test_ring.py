@@ -12,7 +12,7 @@ from c2nav_engine.geometry import Pose
 from c2nav_engine.sensing.conformance_scenes import Room
 from c2nav_engine.sensing.embree import EmbreeRenderer
 from c2nav_engine.sensing.encode import sectors
-from c2nav_engine.sensing.ring import RING_VIEWS, SECTORS, SensorRing
+from c2nav_engine.sensing.ring import DEPTH_STRIDE, RING_VIEWS, SECTORS, SensorRing
 
 ORIGIN = Pose((0.0, 0.0, 0.0), 0.0)
 
@@ -44,6 +44,19 @@ def test_cameras_see_what_lies_on_their_side():
     assert middle[3] == (255, 0, 0)
     assert middle[6] == (255, 0, 255)
     assert middle[9] == (255, 255, 0)
+
+
+def test_only_the_view_ahead_is_sensed_whole_in_depth():
+    ring = SensorRing(VLNCE)
+    renderer = EmbreeRenderer(Room().scene())
+    whole, grid = (256, 256), (256 // DEPTH_STRIDE, 256 // DEPTH_STRIDE)
+    fan = ring.capture(renderer, ORIGIN, ring.fan)
+    assert [image.depth_m.shape for image in fan] == [grid, whole, grid]
+    views = ring.capture(renderer, ORIGIN, ring.ring)
+    assert {image.depth_m.shape for image in views} == {grid}
+    # Both look ahead, so what the one senses is a part of what the other does.
+    assert np.array_equal(views[0].depth_m, fan[1].depth_m[::DEPTH_STRIDE, ::DEPTH_STRIDE])
+    assert np.array_equal(views[0].rgb, fan[1].rgb)
 
 
 def test_a_capture_is_the_same_alone_and_together():
