@@ -39,12 +39,13 @@ const sizes = new ResizeObserver(() => place());
 
 /** Keep our strip over the part of the map that no dock covers. */
 function place() {
+  if (document.documentElement.classList.contains("c2-first")) document.querySelector("[data-dock-root]")?.setAttribute("data-dock-resizing", "");
   const canvas = document.querySelector("canvas[data-engine]");
   if (canvas && canvas !== watched) {
     watched = canvas;
     sizes.observe(canvas);
   }
-  const box = canvas?.getBoundingClientRect();
+  const box = canvas?.parentElement.parentElement.getBoundingClientRect();
   const left = box?.width ? box.left : 0;
   const right = box?.width ? window.innerWidth - box.right : 0;
   document.documentElement.style.setProperty("--c2-left", `${left}px`);
@@ -107,7 +108,15 @@ document.addEventListener("click", async (event) => {
 });
 
 // Until then the server leaves the cores to this page; a second page changes nothing.
-window.addEventListener("c2-stands", () => fetch(at("api/standing"), { method: "POST" }), { once: true });
+window.addEventListener(
+  "c2-stands",
+  () => {
+    document.documentElement.classList.remove("c2-first");
+    document.querySelector("[data-dock-root]")?.removeAttribute("data-dock-resizing");
+    fetch(at("api/standing"), { method: "POST" });
+  },
+  { once: true },
+);
 
 document.addEventListener("pointermove", hovering, { passive: true });
 document.addEventListener("keydown", keys, true);

@@ -10,3 +10,15 @@
   else address.searchParams.delete("darkMode");
   window.history.replaceState(null, "", address);
 })();
+
+// The map is drawn into a few pixels until the decision in view stands: where no GPU draws it, each
+// of viser's first empty frames at full size takes as long as all of the page's own work.
+document.documentElement.classList.add("c2-first");
+
+// viser brings a panorama to light a scene with, and begins to unpack it, on the GPU, before it hears
+// that none is wanted; where no GPU does that, it takes half a second. It stays packed.
+const fetched = window.fetch;
+window.fetch = (what, ...more) => {
+  const url = what instanceof Request ? what.url : String(what);
+  return url.startsWith("data:image/jpeg") ? new Promise(() => {}) : fetched(what, ...more);
+};

@@ -8,6 +8,7 @@ from jaxtyping import Float
 
 from app.inspector.scene.colours import SLATE
 from app.inspector.scene.cutting import CUT_M
+from app.inspector.scene.flat import add_flat
 from app.inspector.scene.layer import Group
 from app.inspector.scene.storey import storey_of
 from app.session.snapshot import Snapshot
@@ -41,15 +42,15 @@ class Floor:
             return []
         corners = shown.reshape(-1, 3)
         return [
-            self._scene.add_mesh_simple(
+            add_flat(
+                self._scene,
                 "/walkable/sheet",
-                corners.astype(np.float32),
-                np.arange(len(corners), dtype=np.uint32).reshape(-1, 3),
-                color=SLATE,
+                (
+                    corners.astype(np.float32),
+                    np.arange(len(corners), dtype=np.uint32).reshape(-1, 3),
+                ),
+                SLATE,
                 opacity=0.45,
-                side="double",
-                position=(0.0, _LIFT_M, 0.0),
-                cast_shadow=False,
-                receive_shadow=False,
+                position_m=(0.0, _LIFT_M, 0.0),
             )
         ]

@@ -28,7 +28,7 @@ Json = dict[str, Any]
 
 
 _SRGB = np.arange(256) / 255.0
-_LINEAR = np.where(_SRGB <= 0.04045, _SRGB / 12.92, ((_SRGB + 0.055) / 1.055) ** 2.4)
+LINEAR = np.where(_SRGB <= 0.04045, _SRGB / 12.92, ((_SRGB + 0.055) / 1.055) ** 2.4)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,7 +59,7 @@ def _vertex_colours(surface: Surface) -> np.ndarray | None:
     count = len(surface.positions_m)
     colours = np.full((count, 4), 255, np.uint8) if surface.colours is None else surface.colours
     shades = np.ones(count) if surface.shades is None else surface.shades
-    lit = (_LINEAR * 255.0)[colours[:, :3]] * shades[:, None]
+    lit = (LINEAR * 255.0)[colours[:, :3]] * shades[:, None]
     return np.concatenate([lit.round().astype(np.uint8), colours[:, 3:]], axis=1)
 
 
@@ -110,7 +110,9 @@ class _Writer:
         if component == _UBYTE:
             accessor["normalized"] = True
         if bounds and len(array):
-            accessor |= {"min": array.min(axis=0).tolist(), "max": array.max(axis=0).tolist()}
+            columns = array.T
+            accessor["min"] = [float(column.min()) for column in columns]
+            accessor["max"] = [float(column.max()) for column in columns]
         return self._add("accessors", accessor)
 
     def _view(self, data: bytes, target: int | None) -> int:
@@ -146,6 +148,8 @@ class _Writer:
         }
         if material.cutout_alpha > 0.0:
             described |= {"alphaMode": "MASK", "alphaCutoff": material.cutout_alpha}
+        elif material.texture is None and material.colour[3] < 1.0:
+            described["alphaMode"] = "BLEND"
         return described
 
     def _texture(self, material: Material) -> int:

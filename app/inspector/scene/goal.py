@@ -6,6 +6,7 @@ import viser
 
 from app.inspector.scene import frames
 from app.inspector.scene.colours import GREEN, GREY
+from app.inspector.scene.flat import add_flat
 from app.inspector.scene.layer import Group
 from app.session.snapshot import Snapshot
 
@@ -36,20 +37,16 @@ class Goal:
         episode = snapshot.story.header.episode
         if episode.goal_m is None:
             return []
-        vertices, faces = frames.disc(episode.goal_radius_m)
         centre_m = frames.raised(episode.goal_m, _DISC_M - frames.LIFT_M)
         ring = frames.ring_points(centre_m, episode.goal_radius_m)
         return [
-            self._scene.add_mesh_simple(
+            add_flat(
+                self._scene,
                 "/goal/disc",
-                vertices,
-                faces,
-                color=GREEN,
+                frames.disc(episode.goal_radius_m),
+                GREEN,
                 opacity=0.25,
-                side="double",
-                position=frames.raised(episode.goal_m, _DISC_M),
-                cast_shadow=False,
-                receive_shadow=False,
+                position_m=frames.raised(episode.goal_m, _DISC_M),
             ),
             self._scene.add_line_segments(
                 "/goal/rim", frames.polyline(ring), GREEN, thickness=3.0, thickness_units="screen"

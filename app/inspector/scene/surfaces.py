@@ -91,9 +91,10 @@ def surface_below(
     corners_m = vertices_m[corners]
     values = layout.values(mesh, rows, corners_m)
     below = corners_m[:, :, 1] <= height_m
-    whole, crossing = below.all(axis=1), below.any(axis=1) & ~below.all(axis=1)
-    agreed = _agreed(corners, values, len(used))
-    shared = whole & (np.abs(values - agreed[corners]) <= layout.tolerances).all(axis=(1, 2))
+    whole = below[:, 0] & below[:, 1] & below[:, 2]
+    crossing = (below[:, 0] | below[:, 1] | below[:, 2]) & ~whole
+    agreed, shared = _agreed(corners, values, layout.tolerances, len(used))
+    shared &= whole
     single = whole & ~shared
     soup = cut_below(corners_m[crossing], values[crossing], height_m)
     used, triangles = _renumbered(corners[shared], len(used))
@@ -104,7 +105,9 @@ def surface_below(
         return None
     heap = np.arange(len(used), len(positions_m)).reshape(-1, 3)
     triangles = np.concatenate([triangles, heap])
-    topmost_first = np.argsort(-positions_m[triangles][:, :, 1].max(axis=1), kind="stable")
+    heights_m = positions_m[:, 1][triangles]
+    top_m = np.maximum(np.maximum(heights_m[:, 0], heights_m[:, 1]), heights_m[:, 2])
+    topmost_first = np.argsort(-top_m, kind="stable")
     heap_values = heap_values.reshape(3 * len(heap_m), layout.width)
     return layout.surface(
         positions_m.astype(np.float32),
@@ -115,16 +118,24 @@ def surface_below(
 
 
 def _agreed(
-    corners: Int64[np.ndarray, "n 3"], values: Float32[np.ndarray, "n 3 values"], count: int
-) -> Float32[np.ndarray, "count values"]:
-    """Mean over the corners that share each vertex."""
+    corners: Int64[np.ndarray, "n 3"],
+    values: Float32[np.ndarray, "n 3 values"],
+    tolerances: Float32[np.ndarray, " values"],
+    count: int,
+) -> tuple[Float32[np.ndarray, "count values"], Bool[np.ndarray, " n"]]:
+    """Mean over the corners that share each vertex; which triangles agree with all of theirs."""
     flat = corners.reshape(-1)
     sharing = np.bincount(flat, minlength=count)
     agreed = np.empty((count, values.shape[2]), np.float32)
-    for column in range(values.shape[2]):
-        sums = np.bincount(flat, weights=values[:, :, column].reshape(-1), minlength=count)
-        agreed[:, column] = sums / sharing
-    return agreed
+    agrees = np.ones(len(corners), np.bool_)
+    # Value by value: a scan has millions of corners, and numpy is slow along short axes.
+    for number, tolerance in enumerate(tolerances):
+        column = values[:, :, number]
+        mean = np.bincount(flat, weights=column.reshape(-1), minlength=count) / sharing
+        agreed[:, number] = mean
+        near = np.abs(column - agreed[:, number][corners]) <= tolerance
+        agrees &= near[:, 0] & near[:, 1] & near[:, 2]
+    return agreed, agrees
 
 
 def _renumbered(

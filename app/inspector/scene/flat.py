@@ -1,0 +1,43 @@
+"""Meshes of one flat colour: a sign looks the same wherever the light comes from.
+
+viser's own meshes are lit pixel by pixel. A browser without a GPU takes longer to compile that
+light than to draw all the rest of the map.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import viser
+from jaxtyping import Float32, UInt32
+
+from app.inspector.scene.colours import Rgb
+from app.inspector.scene.glb import LINEAR, Surface, pack
+from c2nav_engine.geometry import Point
+from c2nav_engine.world.scene import Material
+
+
+def add_flat(
+    scene: viser.SceneApi,
+    name: str,
+    mesh: tuple[Float32[np.ndarray, "n 3"], UInt32[np.ndarray, "m 3"]],
+    colour: Rgb,
+    *,
+    opacity: float = 1.0,
+    position_m: Point = (0.0, 0.0, 0.0),
+) -> viser.SceneNodeHandle:
+    """Add vertices and triangles, seen from both sides.
+
+    Args:
+        scene: Where to draw.
+        name: Of the node.
+        mesh: Vertices in metres and triangles.
+        colour: sRGB.
+        opacity: Below 1, what lies behind shines through.
+        position_m: Where the mesh's origin stands.
+    """
+    vertices_m, triangles = mesh
+    red, green, blue = (float(LINEAR[channel]) for channel in colour)
+    surface = Surface(vertices_m, triangles, Material(name, (red, green, blue, opacity)))
+    return scene.add_glb(
+        name, pack([surface]), position=position_m, cast_shadow=False, receive_shadow=False
+    )
