@@ -6,13 +6,13 @@ input, with one message on standard error; 130 interrupted, with everything fini
 
 from __future__ import annotations
 
-import gc
 import importlib
 import sys
 from collections.abc import Callable, Sequence
 
 import tyro
 
+from app.commands.importing import uncollected
 from c2nav_engine.errors import C2NavError, InputError, MissingExtra, RankerStopped
 
 Command = Callable[..., int]
@@ -88,10 +88,5 @@ def _code(result: object) -> int:
 
 
 def _loaded(name: str) -> Command | dict[str, Command]:
-    # What modules make stays: looking for garbage in it takes a tenth of the time they load in.
-    gc.disable()
-    try:
+    with uncollected():
         return getattr(importlib.import_module(f"app.commands.{name}"), name)
-    finally:
-        gc.freeze()
-        gc.enable()

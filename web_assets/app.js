@@ -19,8 +19,7 @@ const tabs = h("div", { id: "c2-tabs" });
 const ego = h("div", { hidden: true }, "rendered here, not what the robot saw");
 const bare = h("div", { hidden: true }, "map without the scene");
 const seen = h("div", { hidden: true });
-const beside = Object.entries(JSON.parse(document.getElementById("c2-menu-words")?.textContent ?? "{}"));
-const menu = h("nav", { id: "c2-menu", "aria-label": "pages" }, ...beside.map(([name, words]) => h("a", { href: name }, words)));
+const menu = h("nav", { id: "c2-menu", "aria-label": "pages", hidden: true });
 const pills = h("div", { id: "c2-pills" }, banner, bare, seen, ego, tabs, menu);
 top.append(document.createElement("route-strip"), pills, document.createElement("wait-card"));
 const lower = h("div", { id: "c2-low" }, document.createElement("timeline-bar"));
@@ -32,6 +31,16 @@ function mount() {
   place();
   new MutationObserver(place).observe(document.getElementById("root"), { childList: true, subtree: true });
   window.addEventListener("resize", place);
+}
+
+// Those pages say how episodes ended.
+const showMenu = () => (menu.hidden = !state.view || state.view.blind || !menu.children.length);
+
+/** The pages that stand beside this one. */
+async function fillMenu() {
+  const beside = await (await fetch(at("api/menu"))).json();
+  menu.replaceChildren(...Object.entries(beside).map(([name, words]) => h("a", { href: name }, words)));
+  showMenu();
 }
 
 let watched = null;
@@ -63,8 +72,7 @@ subscribe((now, changed) => {
   }
   if (changed.has("view")) {
     ego.hidden = now.view.camera !== "ego";
-    // Those pages say how episodes ended.
-    menu.hidden = now.view.blind || beside.length === 0;
+    showMenu();
   }
   if (changed.has("place") || changed.has("glimpse")) {
     const age = now.glimpse && !now.place.at_decision ? now.place.step - now.glimpse.step : 0;
@@ -132,4 +140,5 @@ if (document.readyState === "loading") document.addEventListener("DOMContentLoad
 else mount();
 restore();
 follow();
+fillMenu();
 window.c2nav = { state, send };

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import socket
+from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 from rich.console import Console
 
+from app.commands.importing import uncollected
 from app.commands.options import (
     ConnectivityOpt,
     GroundTruthOpt,
@@ -18,14 +20,17 @@ from app.commands.options import (
     connectivity_folder,
     key_values,
 )
-from app.commands.run_folders import folder_of_runs, pages_of, traces_under, with_later_traces
-from app.commands.sources import opened_source, opened_traces, trace_files
+from app.commands.what import folder_of_runs, trace_files, traces_under
 from app.gateway.alone import listen
-from app.gateway.runs import serve_runs
-from app.gateway.serving import Address, serve, tunnel_line
+from app.gateway.front import Address, serve, tunnel_line
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.rankers import DEFAULT_RANKER
 from c2nav_engine.experiments.spec import Setting
+
+if TYPE_CHECKING:
+    from starlette.applications import Starlette
+
+    from app.session.first_page import FirstPage
 
 
 def inspect(
@@ -79,38 +84,51 @@ def inspect(
     graphs = connectivity_folder(connectivity, scenes)
     listener = listen(host, port)
     if root is not None and not traces:
-        # Nothing can be stepped yet, but how far the run is can be told.
-        serve_runs(
-            pages_of(root, scenes),
-            listener,
-            host=host,
-            ready=_tell_pages,
-            over=lambda: bool(traces_under(root)),
-        )
-        traces = traces_under(root)
+        traces = _first_traces(root, scenes, listener, host=host)
         if not traces:
             return 0
-    opened = (
-        opened_traces(traces, setting, beside=with_, connectivity=graphs)
-        if traces
-        else opened_source(setting, connectivity=graphs)
-    )
-    opened = replace(opened, blind=blind)
-    runs = None
-    if root is not None:
-        opened = with_later_traces(opened, root, setting, connectivity=graphs)
-        runs = pages_of(root, scenes)
-    ready = _tell if runs is None else _tell_run
+
+    def load(first_page: FirstPage) -> AbstractContextManager[Starlette]:
+        # Most of the start: a browser reads the page meanwhile.
+        with uncollected():
+            from app.commands.inspected import inspected
+
+        return inspected(
+            traces,
+            setting,
+            first_page,
+            root=root,
+            beside=with_,
+            connectivity=graphs,
+            blind=blind,
+        )
+
     serve(
-        opened,
+        load,
         listener,
         host=host,
+        ready=_tell if root is None else _tell_run,
+        first="" if root is None else "run",
         no_browser=no_browser,
-        ready=ready,
-        runs=runs,
-        beside=with_,
     )
     return 0
+
+
+def _first_traces(
+    root: Path, scenes: Path | None, listener: socket.socket, *, host: str
+) -> tuple[Path, ...]:
+    """Serve what can be told of a run until a trace is finished; () where nobody waited so long."""
+    from app.commands.run_folders import pages_of
+    from app.gateway.runs import serve_runs
+
+    serve_runs(
+        pages_of(root, scenes),
+        listener,
+        host=host,
+        ready=_tell_pages,
+        over=lambda: bool(traces_under(root)),
+    )
+    return traces_under(root)
 
 
 def _tell_pages(url: str) -> None:

@@ -15,7 +15,7 @@ from rich.table import Table
 
 from app.commands.options import JsonOpt, RankerOptions, key_values
 from app.commands.output import print_json
-from app.commands.sources import trace_files
+from app.commands.what import trace_files
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.asking import asking_from
 from c2nav_engine.experiments.rankers import RANKERS, ranker_for

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,24 +13,6 @@ from app.session.book import Book
 from app.session.opened import Choice, Opened, Opening
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.spec import Setting
-
-
-def folder_of_runs(what: Sequence[str]) -> Path | None:
-    """The one folder that was named, where it is a run or holds runs; None otherwise."""
-    root = Path(what[0])
-    if len(what) != 1 or not root.is_dir():
-        return None
-    inside = ("manifest.json", "*/manifest.json", "*.mcap", "traces/*.mcap", "*/traces/*.mcap")
-    return root if any(any(root.glob(pattern)) for pattern in inside) else None
-
-
-def traces_under(root: Path) -> tuple[Path, ...]:
-    """Finished traces of a run, or of all runs in a folder."""
-    for pattern in ("traces/*.mcap", "*.mcap", "*/traces/*.mcap"):
-        found = sorted(root.glob(pattern))
-        if found:
-            return tuple(found)
-    return ()
 
 
 def pages_of(root: Path, scenes: Path | None) -> RunPages:

@@ -40,25 +40,6 @@ INSPECTED = Path("logs") / "inspected"
 """Where live episodes and forks of the inspector are recorded, below the working folder."""
 
 
-def trace_files(what: Sequence[str]) -> tuple[Path, ...]:
-    """The traces that the words name: files, or the run folder's; () for a source of episodes."""
-    found: list[Path] = []
-    for word in what:
-        path = Path(word)
-        if path.is_dir():
-            inside = sorted((path / "traces").glob("*.mcap")) or sorted(path.glob("*.mcap"))
-            if not inside:
-                message = f"expected a run folder with traces, came {word}: no .mcap in it"
-                raise UsageError(message)
-            found += inside
-        elif path.suffix == ".mcap" or word.endswith(".mcap.part"):
-            found.append(path)
-        elif len(what) > 1:
-            message = f"expected traces or run folders, or one source; came {' '.join(what)}"
-            raise UsageError(message)
-    return tuple(found)
-
-
 def opened_source(setting: Setting, *, connectivity: Path | None = None) -> Opened:
     """Live episodes of `builtin` or an episode file.
 

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from app.commands.options import JsonOpt, RankerOptions, ScenesOpt, key_values
 from app.commands.output import print_json
-from app.commands.sources import trace_files
+from app.commands.what import trace_files
 from app.session.wording import plural
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.turning.flips import (

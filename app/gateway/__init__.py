@@ -1,5 +1,1 @@
 """The inspector's only public port: viser's page, our assets, the API and the event stream."""
-
-from app.gateway.serving import serve
-
-__all__ = ["serve"]

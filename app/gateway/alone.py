@@ -6,7 +6,7 @@ import socket
 from collections.abc import Callable
 
 import uvicorn
-from fastapi import FastAPI
+from starlette.types import ASGIApp
 
 from c2nav_engine.errors import UsageError
 
@@ -27,7 +27,7 @@ class _Until(uvicorn.Server):
 
 
 def serve_alone(
-    app: FastAPI,
+    app: ASGIApp,
     listener: socket.socket,
     *,
     ready: Callable[[str], None],

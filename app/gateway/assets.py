@@ -6,8 +6,11 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
-from fastapi import FastAPI, Request
-from fastapi.responses import Response
+from starlette.applications import Starlette
+from starlette.datastructures import Headers
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
 
 from c2nav_engine.errors import InternalError
 
@@ -37,18 +40,24 @@ def assets() -> dict[str, Asset]:
     }
 
 
-def serve_assets(app: FastAPI, files: dict[str, Asset]) -> None:
+def asset_answer(files: dict[str, Asset], name: str, headers: Headers) -> Response:
+    """The answer to a request for one of these files with these headers."""
+    found = files.get(name)
+    if found is None:
+        return Response(status_code=404)
+    given = {"ETag": found.etag, "Cache-Control": "no-cache"}
+    if headers.get("if-none-match") == found.etag:
+        return Response(status_code=304, headers=given)
+    return Response(found.body, media_type=found.media_type, headers=given)
+
+
+def serve_assets(app: Starlette, files: dict[str, Asset]) -> None:
     """Add the route of these files."""
 
-    @app.get("/web_assets/{name:path}", include_in_schema=False)
-    def asset(name: str, request: Request) -> Response:
-        found = files.get(name)
-        if found is None:
-            return Response(status_code=404)
-        headers = {"ETag": found.etag, "Cache-Control": "no-cache"}
-        if request.headers.get("if-none-match") == found.etag:
-            return Response(status_code=304, headers=headers)
-        return Response(found.body, media_type=found.media_type, headers=headers)
+    async def asset(request: Request) -> Response:
+        return asset_answer(files, request.path_params["name"], request.headers)
+
+    app.router.routes.append(Route("/web_assets/{name:path}", asset))
 
 
 def _folder() -> Path:

@@ -13,7 +13,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from app.gateway.api import api
 from app.gateway.doors import STRICT_POLICY, Doors, is_loopback
 from app.gateway.feed import Feed
-from app.gateway.shell_page import with_tags
+from app.gateway.page import with_tags
 from app.session.worker import Session
 from c2nav_engine.errors import InternalError
 from tests.helpers import stage

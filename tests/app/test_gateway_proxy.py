@@ -17,6 +17,7 @@ from websockets.sync.client import connect
 from websockets.typing import Origin, Subprotocol
 
 from app.gateway.doors import STRICT_POLICY, VISER_POLICY
+from app.gateway.page import viser_page
 from tests.helpers import stage
 from tests.helpers.page import inspector
 
@@ -53,6 +54,14 @@ def test_the_page_is_visers_with_our_tags_and_its_policy(address: str):
     assert page.index(b"web_assets/boot.js") < page.rindex(b"</head>")
     assert answer.headers["Content-Security-Policy"] == VISER_POLICY
     assert answer.headers["Cache-Control"] == "no-cache"
+
+
+def test_the_page_in_the_package_is_the_one_that_viser_serves():
+    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    try:
+        assert viser_page().read_bytes() == get(f"127.0.0.1:{server.get_port()}", "/").body
+    finally:
+        server.stop()
 
 
 def test_the_page_is_packed_for_those_who_ask(address: str):

@@ -11,10 +11,11 @@ from starlette.testclient import TestClient
 
 from app.commands.sources import opened_traces
 from app.gateway.runs import RunPages, runs_application
-from app.gateway.serving import menu_of, mount_pages
-from app.gateway.shell_page import with_tags
+from app.gateway.serving import application, menu_of, mount_pages
+from app.inspector.shell import Shell
 from app.pages.library import Library
 from app.session.opened import Opened
+from app.session.worker import Session
 from c2nav_engine.experiments.spec import Setting
 from tests.helpers import stage
 from tests.helpers.judged import judged_run
@@ -27,6 +28,18 @@ def linked(page: str) -> list[str]:
     menu = re.search(r'<nav aria-label="pages">(.*?)</nav>', page, re.DOTALL)
     assert menu is not None
     return re.findall(r'href="([^"]+)"', menu[1])
+
+
+def told(opened: Opened, menu: tuple[str, ...]) -> dict[str, str]:
+    """What the inspector's page asks for."""
+    session = Session(opened)
+    shell = Shell(session)
+    try:
+        app = application(session, shell, menu=menu)
+        return TestClient(app, base_url="http://127.0.0.1").get("/api/menu").json()
+    finally:
+        session.close()
+        shell.close()
 
 
 @pytest.fixture
@@ -71,7 +84,7 @@ def test_pages_alone_name_no_inspector_and_open_nothing_in_it(opened: tuple[Open
 
 
 def test_the_inspector_page_is_told_what_stands_beside_it(opened: tuple[Opened, RunPages]):
-    page = b"<html><head></head></html>"
-    beside = with_tags(page, menu_of(*opened))
-    assert b'{"run": "Run", "cases": "Cases", "compare": "Compare", "agreement"' in beside
-    assert b'id="c2-menu-words">{}<' in with_tags(page, menu_of(stage.opened_live(), None))
+    beside = {"run": "Run", "cases": "Cases", "compare": "Compare", "agreement": "Agreement"}
+    assert told(opened[0], menu_of(*opened)) == beside
+    live = stage.opened_live()
+    assert told(live, menu_of(live, None)) == {}

@@ -6,17 +6,17 @@ import json
 import os
 import shutil
 from collections.abc import Callable, Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import pytest
-import uvicorn
 from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
+from app.gateway.front import Front, Server, settings_of
 from app.gateway.runs import RunPages
-from app.gateway.serving import Server, application, menu_of, mount_pages
+from app.gateway.serving import application, menu_of, mount_pages
 from app.inspector.shell import Shell
 from app.session.opened import Opened
 from app.session.worker import Session
@@ -51,15 +51,9 @@ def inspector(opened: Opened, runs: RunPages | None = None) -> Generator[tuple[s
     app = application(session, shell, menu=menu_of(opened, runs) if runs else ())
     if runs is not None:
         mount_pages(app, opened, runs)
-    config = uvicorn.Config(
-        app,
-        ws="websockets-sansio",
-        ws_max_size=1 << 40,
-        log_level="warning",
-        timeout_graceful_shutdown=1,
-    )
+    front = Front(lambda _: nullcontext(app))
     try:
-        with on_loopback(Server(config)) as address:
+        with on_loopback(Server(settings_of(front), front)) as address:
             yield address, session
     finally:
         session.close()
