@@ -1,4 +1,4 @@
-"""One browser and one running inspector for all tests of the page."""
+"""A browser for each file of tests, and a running inspector for each test of the page."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ from tests.helpers import stage
 from tests.helpers.page import Visit, chromium, inspector, visit
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
+    # Playwright keeps this thread's event loop for as long as it lasts: tests of other files that
+    # run one of their own may follow in the same process.
     with chromium() as browser:
         yield browser
 
