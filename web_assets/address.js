@@ -9,6 +9,7 @@ export function restore() {
   const reload = performance.getEntriesByType("navigation")[0]?.type === "reload";
   if (reload || !NAMES.some((name) => asked.has(name))) return;
   const stop = subscribe(() => {
+    if (!state.schema) return;
     queueMicrotask(() => stop());
     const at = { branch: asked.get("branch") ?? "" };
     if (asked.has("decision")) at.decision = Number(asked.get("decision"));

@@ -62,6 +62,7 @@ function place() {
 }
 
 subscribe((now, changed) => {
+  if (now.schema) document.documentElement.classList.remove("c2-opening");
   if (changed.has("branch")) {
     banner.textContent = now.branch.label;
     banner.classList.toggle("differs", now.branch.differs);

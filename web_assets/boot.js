@@ -5,6 +5,7 @@
   const address = new URL(window.location.href);
   const asked = address.searchParams.get("theme");
   const dark = asked ? asked === "dark" : window.matchMedia("(prefers-color-scheme: dark)").matches;
+  document.documentElement.classList.toggle("c2-dark", dark);
   if (dark === address.searchParams.has("darkMode")) return;
   if (dark) address.searchParams.set("darkMode", "1");
   else address.searchParams.delete("darkMode");
@@ -13,7 +14,7 @@
 
 // The map is drawn into a few pixels until the decision in view stands: where no GPU draws it, each
 // of viser's first empty frames at full size takes as long as all of the page's own work.
-document.documentElement.classList.add("c2-first");
+document.documentElement.classList.add("c2-opening", "c2-first");
 
 // viser brings a panorama to light a scene with, and begins to unpack it, on the GPU, before it hears
 // that none is wanted; where no GPU does that, it takes half a second. It stays packed.

@@ -42,10 +42,8 @@ export function follow() {
     tell(new Set(Object.keys(sections)));
   });
   stream.addEventListener("error", () => {
-    if (link.connected) {
-      link.connected = false;
-      tell(new Set(["link"]));
-    }
+    link.connected = false;
+    tell(new Set(["link"]));
     if (stream.readyState === EventSource.CLOSED) {
       setTimeout(follow, retry_ms);
       retry_ms = Math.min(retry_ms * 2, 8000);

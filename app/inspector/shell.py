@@ -63,14 +63,14 @@ class Shell:
             self._server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
         self._updates: list[Update] = []
         self._layers: list[Layer] = []
-        self._cameras = Cameras(self._server, covered_px=LEFT_PX + RIGHT_PX)
+        self._cameras = Cameras(self._server, lambda: session.snapshot)
         self._changed = threading.Event()
         self._closing = False
         self._dress()
         self._build_docks()
         self._build_scene()
         self._stop_following = session.subscribe(lambda _: self._changed.set())
-        self._server.on_client_connect(self._greet)
+        self._server.on_client_connect(self._cameras.greet)
         self._changed.set()
         self._mapped = threading.Event()
         self._painter = threading.Thread(target=self._paint, name="c2nav-paint", daemon=True)
@@ -159,9 +159,6 @@ class Shell:
                 self._session.first_page.sent,
             ),
         ]
-
-    def _greet(self, client: viser.ClientHandle) -> None:
-        self._cameras.greet(client, self._session.snapshot)
 
     def _paint(self) -> None:
         while not self._closing:

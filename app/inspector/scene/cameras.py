@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import viser
@@ -15,8 +17,11 @@ _PITCH = math.radians(66.0)
 """Of the first view: steep enough to look over walls, flat enough to read furniture."""
 
 _FOV = math.radians(50.0)
-_USED = 0.75
-"""Share of the uncovered picture that the framed points may fill: views stand around the body."""
+_USED = 0.85
+"""Share of the uncovered picture that the framed points may fill."""
+
+_AROUND_M = 1.5
+"""So far around the body its views stand."""
 
 _COVERED_MOST = 0.4
 """However long the instruction, the map keeps more than half of its height."""
@@ -26,60 +31,81 @@ _ROW_PX, _LETTER_PX, _BELOW_PX = 26, 10, 94
 
 _NEAREST_M = 6.0
 
-_LEAST_PX = 400
-"""No window is so narrow that the docks leave less: then they were subtracted already."""
+_STILL_M = 0.01
+"""A camera nearer than this to where it was put has not been moved by a person."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Framed:
+    """What a page's map was framed for, and from where."""
+
+    size_px: tuple[int, int]
+    eye_m: Point
 
 
 class Cameras:
-    """Moves the clients' cameras; a free camera is framed once and then left to the person."""
+    """Moves the clients' cameras; a free camera is framed and, once moved, left to the person."""
 
-    def __init__(self, server: viser.ViserServer, *, covered_px: int) -> None:
+    def __init__(self, server: viser.ViserServer, here: Callable[[], Snapshot]) -> None:
         """Start above the origin until something is known.
 
         Args:
             server: Whose clients are moved.
-            covered_px: Width of the docks. A page connects before they take their place, so its
-                first picture is as wide as the window.
+            here: What the pages show.
         """
         self._server = server
-        self._covered_px = covered_px
-        self._framed: str = ""
+        self._here = here
+        self._opened: str = ""
         self._mode: str = ""
+        self._framed: dict[int, _Framed] = {}
 
     def update(self, snapshot: Snapshot) -> None:
         """Frame at first, follow after."""
         mode = snapshot.view.camera
         opened = snapshot.branches[0].branch_id
-        changed: bool = mode != self._mode or opened != self._framed
-        self._mode, self._framed = mode, opened
+        changed: bool = mode != self._mode or opened != self._opened
+        self._mode, self._opened = mode, opened
         if mode != "free" or changed:
             for client in self._server.get_clients().values():
-                self.greet(client, snapshot)
+                self._show(client, snapshot)
 
-    def greet(self, client: viser.ClientHandle, snapshot: Snapshot) -> None:
-        """Give a page the view that the others have."""
-        if snapshot.view.camera == "free":
-            camera = client.camera
-            width_px = uncovered_px(camera.image_width, self._covered_px)
-            camera.fov = _FOV
-            covered = covered_share(snapshot, width_px, camera.image_height)
-            aspect = width_px / camera.image_height
-            _look(client, *overview(framed_points(snapshot), aspect, covered=covered))
-        else:
+    def greet(self, client: viser.ClientHandle) -> None:
+        """Give a page the view that the others have, now and once its map has its size."""
+        self._show(client, self._here())
+        client.camera.on_update(lambda _: self._refit(client))
+
+    def _show(self, client: viser.ClientHandle, snapshot: Snapshot) -> None:
+        if snapshot.view.camera != "free":
+            self._framed.pop(client.client_id, None)
             _place(client, snapshot, snapshot.view.camera)
+            return
+        camera = client.camera
+        width_px, height_px = camera.image_width, camera.image_height
+        camera.fov = _FOV
+        covered = covered_share(snapshot, width_px, height_px)
+        eye, target = overview(framed_points(snapshot), width_px / height_px, covered=covered)
+        self._framed[client.client_id] = _Framed((width_px, height_px), eye)
+        _look(client, eye, target)
 
+    def _refit(self, client: viser.ClientHandle) -> None:
+        """Frame anew where the map has another size and nobody has moved the camera yet.
 
-def uncovered_px(width_px: int, covered_px: int) -> int:
-    """Width of the map once the docks stand, whether or not they do already."""
-    left = width_px - covered_px
-    return left if left > _LEAST_PX else width_px
+        A page connects while its map is still small, and docks can be widened.
+        """
+        framed = self._framed.get(client.client_id)
+        camera = client.camera
+        if framed is None or framed.size_px == (camera.image_width, camera.image_height):
+            return
+        if math.dist(camera.position.tolist(), framed.eye_m) < _STILL_M:
+            self._show(client, self._here())
 
 
 def framed_points(snapshot: Snapshot) -> list[Point]:
-    """Start, body and goal."""
+    """Start, goal, and the body with its views around it."""
     episode = snapshot.story.header.episode
-    body = snapshot.story.track.footsteps[snapshot.here.step].pose.position_m
-    points = [episode.start.position_m, body]
+    x, y, z = snapshot.story.track.footsteps[snapshot.here.step].pose.position_m
+    sides = ((_AROUND_M, 0.0), (-_AROUND_M, 0.0), (0.0, _AROUND_M), (0.0, -_AROUND_M))
+    points = [episode.start.position_m, *((x + dx, y, z + dz) for dx, dz in sides)]
     if episode.goal_m is not None:
         points.append(episode.goal_m)
     return points
