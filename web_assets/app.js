@@ -122,10 +122,17 @@ window.addEventListener(
   () => {
     document.documentElement.classList.remove("c2-first");
     document.querySelector("[data-dock-root]")?.removeAttribute("data-dock-resizing");
-    fetch(at("api/standing"), { method: "POST" });
+    fetch(at("api/standing"), { method: "POST" }).then(() => watchScene());
   },
   { once: true },
 );
+
+/** Say when the scene is there; who opened without one never says it. */
+function watchScene(turns = 300) {
+  const nodes = window.__viserSceneTree?.getState() ?? {};
+  if ("/scene/part0" in nodes) requestAnimationFrame(() => fetch(at("api/standing/scene"), { method: "POST" }));
+  else if (turns > 0) setTimeout(watchScene, 100, turns - 1);
+}
 
 document.addEventListener("pointermove", hovering, { passive: true });
 document.addEventListener("keydown", keys, true);

@@ -46,6 +46,12 @@ def api(session: Session, feed: Feed) -> APIRouter:
         session.first_page.stands()
         return Response(status_code=204)
 
+    @router.post("/standing/scene", status_code=204)
+    async def showing() -> Response:
+        """A page shows the scene: so may what is looked at last."""
+        session.first_page.shown()
+        return Response(status_code=204)
+
     _add_pictures(router, session)
     return router
 

@@ -58,7 +58,9 @@ class Front:
         """
         self._load = load
         self._loading: asyncio.Task[Starlette] | None = None
-        self._first_page = FirstPage(asked_within_s=2.0, stands_within_s=30.0, sent_within_s=10.0)
+        self._first_page = FirstPage(
+            asked_within_s=2.0, stands_within_s=30.0, sent_within_s=10.0, shown_within_s=5.0
+        )
         self._page, self._files = Page(), assets()
         self._made = ExitStack()
 

@@ -56,6 +56,20 @@ def test_suspects_wait_for_the_scene_too_but_not_without_end():
     FirstPage(sent_within_s=AT_ONCE_S).wait_for_scene()
 
 
+def test_suspects_wait_until_a_page_that_was_asked_for_shows_the_scene():
+    first = FirstPage(sent_within_s=NEVER_S, shown_within_s=NEVER_S)
+    first.asked()
+    first.sent()
+    waiting = begun(first.wait_for_scene)
+    assert not waiting.wait(AT_ONCE_S)
+    first.shown()
+    assert waiting.wait(NEVER_S)
+    hurried = FirstPage(sent_within_s=NEVER_S, shown_within_s=AT_ONCE_S)
+    hurried.asked()
+    hurried.sent()
+    hurried.wait_for_scene()
+
+
 @pytest.mark.parametrize(
     "come", [lambda _: None, FirstPage.asked], ids=["nobody comes", "a page that never stands"]
 )
@@ -82,4 +96,17 @@ def test_suspects_are_looked_for_after_the_page_that_says_it_stands():
     assert not loaded.wait(AT_ONCE_S)
     assert TestClient(app).post("/api/standing").status_code == 204
     assert loaded.wait(NEVER_S)
+    session.close()
+
+
+def test_a_page_says_that_it_shows_the_scene():
+    first = FirstPage(sent_within_s=NEVER_S, shown_within_s=NEVER_S)
+    session = Session(stage.opened_recording(cycles=1), first_page=first)
+    app = FastAPI()
+    app.include_router(api(session, Feed(session)))
+    first.asked()
+    first.sent()
+    waiting = begun(first.wait_for_scene)
+    assert TestClient(app).post("/api/standing/scene").status_code == 204
+    assert waiting.wait(NEVER_S)
     session.close()
