@@ -48,13 +48,13 @@ const sizes = new ResizeObserver(() => place());
 
 /** Keep our strip over the part of the map that no dock covers. */
 function place() {
-  if (document.documentElement.classList.contains("c2-first")) document.querySelector("[data-dock-root]")?.setAttribute("data-dock-resizing", "");
-  const canvas = document.querySelector("canvas[data-engine]");
-  if (canvas && canvas !== watched) {
-    watched = canvas;
-    sizes.observe(canvas);
+  hurry();
+  const map = document.querySelector("canvas[data-engine]")?.parentElement.parentElement;
+  if (map && map !== watched) {
+    watched = map;
+    sizes.observe(map);
   }
-  const box = canvas?.parentElement.parentElement.getBoundingClientRect();
+  const box = map?.getBoundingClientRect();
   const left = box?.width ? box.left : 0;
   const right = box?.width ? window.innerWidth - box.right : 0;
   document.documentElement.style.setProperty("--c2-left", `${left}px`);
@@ -120,12 +120,24 @@ document.addEventListener("click", async (event) => {
 window.addEventListener(
   "c2-stands",
   () => {
-    document.documentElement.classList.remove("c2-first");
-    document.querySelector("[data-dock-root]")?.removeAttribute("data-dock-resizing");
+    enlarge();
     fetch(at("api/standing"), { method: "POST" }).then(() => watchScene());
   },
   { once: true },
 );
+setTimeout(enlarge, 10_000);
+
+/** While the map is small, docks take their place without easing in: viser's own mark for that. */
+function hurry() {
+  if (!document.documentElement.classList.contains("c2-first")) return;
+  document.querySelector("[data-dock-root]")?.setAttribute("data-dock-resizing", "");
+}
+
+/** Give the map its place, once the decision stands or where none comes. */
+function enlarge() {
+  document.documentElement.classList.remove("c2-first");
+  document.querySelector("[data-dock-root]")?.removeAttribute("data-dock-resizing");
+}
 
 /** Say when the scene is there; who opened without one never says it. */
 function watchScene(turns = 300) {

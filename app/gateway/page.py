@@ -25,9 +25,6 @@ viser's own script reads the address."""
 class Page:
     """The page as it is served; read from viser's package, which need not be imported for it."""
 
-    def __init__(self) -> None:
-        """Nothing is read yet."""
-
     @cached_property
     def _plain(self) -> bytes:
         return with_tags(viser_page().read_bytes())

@@ -46,7 +46,7 @@ _AT_LATEST_S = 1.0
 """The shell is drawn once nothing has changed for so long and the session is idle, or at the latest
 so long after a change. The page's own strip and timeline come first; where the browser draws the
 map without a GPU, each frame of it takes the cores that the next view is rendered with, and a
-glance renders for a quarter of a second."""
+glance renders for a tenth of a second."""
 
 LEFT_PX = 520
 RIGHT_PX = 300
