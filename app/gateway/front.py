@@ -94,6 +94,9 @@ class Front:
             await rest(scope, receive, send)
         elif scope["type"] == "http":
             await PlainTextResponse("the inspector could not open", 503)(scope, receive, send)
+        else:
+            await receive()
+            await send({"type": "websocket.close", "code": 1013})
 
     def _early(self, scope: Scope) -> Response | None:
         if scope["type"] != "http" or scope["method"] not in ("GET", "HEAD"):
