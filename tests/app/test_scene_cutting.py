@@ -3,13 +3,17 @@ from __future__ import annotations
 import json
 import struct
 from dataclasses import replace
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from app.inspector.scene.cutting import cut_below
+from app.inspector.scene.flat import add_flat
+from app.inspector.scene.frames import disc
 from app.inspector.scene.glb import Surface, pack
 from app.inspector.scene.mesh import chunks
 from app.inspector.scene.section import section_of
@@ -136,6 +140,30 @@ def test_light_is_painted_on_the_vertices_of_what_has_none_of_its_own():
     light = np.repeat([LEVEL, ALONG_Z], 3) * 255.0
     assert np.abs(colours[:, :3] - light[:, None]).max() <= 1.0
     assert (colours[:, 3] == 255).all()
+
+
+@pytest.mark.parametrize(("opacity", "mode"), [(1.0, None), (0.25, "BLEND")])
+def test_a_sign_has_its_colour_unlit_and_shines_through_where_it_should(opacity, mode):
+    sent: list[bytes] = []
+    scene = cast("Any", SimpleNamespace(add_glb=lambda _, data, **__: sent.append(data)))
+    add_flat(scene, "/goal/disc", disc(3.0), (0, 158, 255), opacity=opacity)
+    document, _ = unpacked(sent[0])
+    (material,) = document["materials"]
+    assert "KHR_materials_unlit" in material["extensions"]
+    assert material["doubleSided"]
+    assert material.get("alphaMode") == mode
+    red, green, blue, alpha = material["pbrMetallicRoughness"]["baseColorFactor"]
+    assert (red, blue, alpha) == (0.0, 1.0, opacity)
+    # glTF's factors are linear: 158 of 255 is a third of the light.
+    assert green == pytest.approx(0.342, abs=1e-3)
+
+
+def test_a_scenes_alpha_does_not_shine_through_unless_its_file_says_so():
+    glass = Material("glass", (1.0, 1.0, 1.0, 0.3))
+    corners_m = box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)).reshape(-1, 3)
+    surface = Surface(corners_m, np.arange(len(corners_m), dtype=np.uint32), glass)
+    document, _ = unpacked(pack([surface]))
+    assert "alphaMode" not in document["materials"][0]
 
 
 def test_what_is_high_is_drawn_first():

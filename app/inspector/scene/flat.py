@@ -37,7 +37,8 @@ def add_flat(
     """
     vertices_m, triangles = mesh
     red, green, blue = (float(LINEAR[channel]) for channel in colour)
-    surface = Surface(vertices_m, triangles, Material(name, (red, green, blue, opacity)))
+    material = Material(name, (red, green, blue, 1.0))
+    surface = Surface(vertices_m, triangles, material, opacity=opacity)
     return scene.add_glb(
         name, pack([surface]), position=position_m, cast_shadow=False, receive_shadow=False
     )

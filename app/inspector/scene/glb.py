@@ -42,6 +42,7 @@ class Surface:
         uvs: Texture coordinates with the origin at the top left, or None.
         colours: 8-bit sRGB colour with alpha, or None.
         shades: Share of light at each vertex, linear, or None for all of it.
+        opacity: Below 1, what lies behind shines through.
     """
 
     positions_m: np.ndarray
@@ -50,6 +51,7 @@ class Surface:
     uvs: np.ndarray | None = None
     colours: np.ndarray | None = None
     shades: np.ndarray | None = None
+    opacity: float = 1.0
 
 
 def _vertex_colours(surface: Surface) -> np.ndarray | None:
@@ -77,7 +79,7 @@ class _Writer:
             name: []
             for name in ("bufferViews", "accessors", "materials", "textures", "images", "samplers")
         }
-        self._materials: dict[int, int] = {}
+        self._materials: dict[tuple[int, float], int] = {}
 
     def primitive(self, surface: Surface) -> Json:
         attributes = {"POSITION": self._accessor(surface.positions_m, "VEC3", bounds=True)}
@@ -89,7 +91,7 @@ class _Writer:
         return {
             "attributes": attributes,
             "indices": self._accessor(surface.triangles.reshape(-1), "SCALAR"),
-            "material": self._material(surface.material),
+            "material": self._material(surface.material, surface.opacity),
         }
 
     def _accessor(self, array: np.ndarray, kind: str, *, bounds: bool = False) -> int:
@@ -126,14 +128,16 @@ class _Writer:
         self._document[section].append(item)
         return len(self._document[section]) - 1
 
-    def _material(self, material: Material) -> int:
-        if id(material) not in self._materials:
-            self._materials[id(material)] = self._add("materials", self._described(material))
-        return self._materials[id(material)]
+    def _material(self, material: Material, opacity: float) -> int:
+        key = id(material), opacity
+        if key not in self._materials:
+            self._materials[key] = self._add("materials", self._described(material, opacity))
+        return self._materials[key]
 
-    def _described(self, material: Material) -> Json:
+    def _described(self, material: Material, opacity: float) -> Json:
+        red, green, blue, alpha = material.colour
         surface: Json = {
-            "baseColorFactor": list(material.colour),
+            "baseColorFactor": [red, green, blue, alpha * opacity],
             "metallicFactor": 0.0,
             "roughnessFactor": 1.0,
         }
@@ -148,7 +152,7 @@ class _Writer:
         }
         if material.cutout_alpha > 0.0:
             described |= {"alphaMode": "MASK", "alphaCutoff": material.cutout_alpha}
-        elif material.texture is None and material.colour[3] < 1.0:
+        elif opacity < 1.0:
             described["alphaMode"] = "BLEND"
         return described
 
