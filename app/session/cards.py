@@ -106,11 +106,22 @@ def said_of(snapshot: Snapshot, decision: Decision) -> Answered | None:
     """The outcome on show: the person's draft, else what was committed, else the proposal."""
     if not snapshot.draft.empty:
         return outcome_of(snapshot.draft, tuple(c.key for c in decision.offered))
+    return answered(snapshot, decision)
+
+
+def answered(snapshot: Snapshot, decision: Decision) -> Answered | None:
+    """What was committed, else the proposal."""
     if decision.outcome is not None:
         return decision.outcome
     if decision.elected is not None:
         return Ordering(((decision.elected,),))
     return snapshot.proposal.outcome if snapshot.proposal else None
+
+
+def winner_of(snapshot: Snapshot, decision: Decision) -> Key:
+    """The alternative that was elected, or would be; "" where none is."""
+    outcome = answered(snapshot, decision)
+    return outcome.winner if isinstance(outcome, Ordering) else ""
 
 
 def ranks_of(outcome: Answered | None) -> dict[Key, int]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from app.session import commands as c
 from app.session import judging, moving
+from app.session.cards import winner_of
 from app.session.desk import Desk
 from app.session.draft import Draft, outcome_of
 from app.session.snapshot import WHOLE
@@ -51,8 +52,12 @@ def better(desk: Desk, command: c.Better) -> None:
     key = command.key
     if not key and 0 <= command.position < len(by_position):
         key = by_position[command.position]
-    if key in letters:
-        judge(desk, judging.better(key))
+    if decision is None or key not in letters:
+        return
+    if key == winner_of(desk.snapshot, decision):
+        desk.say(f"{letters[key]} is what was answered: another one can be better")
+        return
+    judge(desk, judging.better(key))
 
 
 def leg_end(desk: Desk, command: c.LegEnd) -> None:

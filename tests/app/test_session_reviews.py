@@ -16,6 +16,7 @@ from app.reviews.events import Event, Kind
 from app.reviews.store import Store
 from app.session import commands as c
 from app.session import veil
+from app.session.cards import winner_of
 from app.session.snapshot import WHOLE, Snapshot
 from app.session.state_json import state_json
 from app.session.story import story_of
@@ -82,6 +83,23 @@ def test_everything_said_is_there_when_the_trace_is_opened_again(tmp_path: Path)
         assert seen.until(lambda s: s.here.decision == 2).others == {"ann": said}
     assert all(event.trace_sha256 == SHA for event in stored(tmp_path))
     assert all(event.when_s == 7.0 for event in stored(tmp_path))
+
+
+def test_what_was_answered_cannot_be_the_better_one(tmp_path: Path):
+    with opened(tmp_path) as seen:
+        seen.do(c.Go(decision=2))
+        snapshot = seen.until(lambda s: s.here.decision == 2)
+        assert snapshot.decision is not None
+        elected = winner_of(snapshot, snapshot.decision)
+        letter = snapshot.decision.letters[elected]
+        seen.do(c.Better(key=elected))
+        assert seen.until(lambda s: bool(s.notice.text)).notice.text.startswith(
+            f"{letter} is what was"
+        )
+        assert seen.session.snapshot.judgements == {}
+        other = next(key for key in snapshot.decision.letters if key != elected)
+        seen.do(c.Better(key=other))
+        seen.until(judged(2, better=other))
 
 
 def test_undo_and_redo_are_events_and_reach_over_sessions(tmp_path: Path):

@@ -25,7 +25,11 @@ def test_what_is_said_by_keys_and_mouse_is_stored_and_shown_again(browser: Brows
             page.evaluate("c2nav.send('go', {decision: 2})")
             seen.until("s.place.decision === 2")
             page.keyboard.press("w")
-            page.keyboard.press("Shift+Digit2")
+            cards = [card for card in seen.state()["decision"]["cards"] if card["letter"]]
+            digits = {card["rank"]: "ABC".index(card["letter"]) + 1 for card in cards}
+            page.keyboard.press(f"Shift+Digit{digits[1]}")
+            seen.until("s.notice.text.endsWith('another one can be better')")
+            page.keyboard.press(f"Shift+Digit{digits[2]}")
             seen.until("s.judgement.verdict === 'wrong' && s.judgement.better !== ''")
             page.get_by_role("tab", name="Review", exact=True).click()
             page.get_by_role("button", name="wrong object").click()

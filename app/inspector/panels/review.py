@@ -12,6 +12,7 @@ from app.inspector import markup as m
 from app.inspector.panels.controls import Picker
 from app.inspector.panels.protocol import Dispatch, Html, Update
 from app.session import commands as c
+from app.session.cards import winner_of
 from app.session.differing import KINDS
 from app.session.snapshot import WHOLE, Judgement, Snapshot
 from app.session.wording import outcome_words, plural
@@ -144,7 +145,7 @@ def _verdicts(judged: Judgement, offered: tuple[Value, ...]) -> Markup:
 
 
 def _better(snapshot: Snapshot, judged: Judgement) -> Markup:
-    """The alternatives by letter; pressed is what would have been better."""
+    """The other alternatives by letter; pressed is what would have been better."""
     decision = snapshot.decision
     if decision is None or decision.question is None or snapshot.covered:
         return m.NOTHING
@@ -152,6 +153,7 @@ def _better(snapshot: Snapshot, judged: Judgement) -> Markup:
     buttons = m.join(
         m.action(letter, c.Better(key=key), pressed=judged.better == key, title="Shift and digit")
         for key, letter in letters
+        if key != winner_of(snapshot, decision)
     )
     own = outcome_words(judged.ranking, decision.letters)
     return m.join(
