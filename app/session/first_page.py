@@ -57,6 +57,11 @@ class FirstPage:
         """A page shows the scene."""
         self._shown.set()
 
+    def release(self) -> None:
+        """Nothing is worth waiting for any longer."""
+        for event in (self._asked, self._stands, self._sent, self._shown):
+            event.set()
+
     def wait(self) -> None:
         """Return once heavy work is in nobody's way."""
         if self._asked.wait(self._asked_within_s):

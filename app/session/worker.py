@@ -11,6 +11,7 @@ import queue
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 
 from app.session import driving, moving
 from app.session.commands import Command
@@ -33,6 +34,10 @@ Subscriber = Callable[[Snapshot], None]
 
 class StaleCommand(C2NavError):
     """A command was given to a state that is gone; the page looks again."""
+
+
+class _Closed(Exception):
+    """What a background task waited for came after the session's end."""
 
 
 class Session:
@@ -63,7 +68,12 @@ class Session:
         self._subscribers: list[Subscriber] = []
         self._closing = threading.Event()
         self._busy = False
-        hands = Hands(self._background, clock, self.first_page.wait, self.first_page.wait_for_scene)
+        hands = Hands(
+            self._background,
+            clock,
+            after_page=partial(self._after, self.first_page.wait),
+            after_scene=partial(self._after, self.first_page.wait_for_scene),
+        )
         self._desk = Desk(opened, self.album, hands)
         self._behind: Snapshot = self._desk.snapshot
         self._published: Snapshot = self._drawn()
@@ -112,6 +122,7 @@ class Session:
     def close(self) -> None:
         """Stop working and let go of the runs."""
         self._closing.set()
+        self.first_page.release()
         self._inbox.put(None)
         if self._worker.is_alive():
             self._worker.join(timeout=5.0)
@@ -189,10 +200,18 @@ class Session:
             target=lambda: self._inbox.put(self._outcome(task)), name="c2nav-task", daemon=True
         ).start()
 
+    def _after(self, wait: Callable[[], None]) -> None:
+        """Return once the wait is over; raises `_Closed` where the session is by then."""
+        wait()
+        if self._closing.is_set():
+            raise _Closed
+
     @staticmethod
     def _outcome(task: Callable[[], Message]) -> Message:
         try:
             return task()
+        except _Closed:
+            return lambda _: None
         except Exception as error:
             log.exception("a background task failed")
             problem = f"{type(error).__name__}: {error}"

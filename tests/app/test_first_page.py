@@ -99,6 +99,33 @@ def test_suspects_are_looked_for_after_the_page_that_says_it_stands():
     session.close()
 
 
+def test_what_waits_for_a_page_is_let_go_and_not_done_when_the_session_ends():
+    loaded = threading.Event()
+
+    def load() -> Surface:
+        loaded.set()
+        raise SceneError("expected a floor, came none")
+
+    class Noting(FirstPage):
+        waiting = threading.Event()
+
+        def wait_for_scene(self) -> None:
+            self.waiting.set()
+            super().wait_for_scene()
+
+    first = Noting(asked_within_s=NEVER_S, stands_within_s=NEVER_S)
+    recording = stage.opened_recording(cycles=2)
+    opened = replace(recording, open=lambda c: replace(recording.open(c), surface=load))
+    session = Session(opened, first_page=first)
+    before = set(threading.enumerate())
+    session.start()
+    assert first.waiting.wait(NEVER_S)
+    session.close()
+    for thread in set(threading.enumerate()) - before:
+        thread.join(NEVER_S)
+    assert not loaded.is_set()
+
+
 def test_a_page_says_that_it_shows_the_scene():
     first = FirstPage(sent_within_s=NEVER_S, shown_within_s=NEVER_S)
     session = Session(stage.opened_recording(cycles=1), first_page=first)
