@@ -1,4 +1,4 @@
-"""What `inspect` makes of a folder: the runs in it, their traces, and the pages about them."""
+"""What `inspect` makes of a folder: the pages about its runs, and traces that come later."""
 
 from __future__ import annotations
 

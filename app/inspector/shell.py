@@ -71,6 +71,7 @@ class Shell:
         self._build_scene()
         self._stop_following = session.subscribe(lambda _: self._changed.set())
         self._server.on_client_connect(self._cameras.greet)
+        self._server.on_client_disconnect(self._cameras.forget)
         self._changed.set()
         self._mapped = threading.Event()
         self._painter = threading.Thread(target=self._paint, name="c2nav-paint", daemon=True)

@@ -20,7 +20,7 @@ DEPTH_STRIDE = 4
 """Every n-th row and column of a depth picture is read [C]; only the view ahead is sensed whole.
 
 Rays of colour and depth cost the same, and there are more of depth: sensing only what is read
-makes a full look twice as cheap.
+leaves less than half of the rays of a full look.
 """
 
 SECTORS = 6

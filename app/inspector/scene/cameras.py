@@ -74,9 +74,13 @@ class Cameras:
         self._show(client, self._here())
         client.camera.on_update(lambda _: self._refit(client))
 
+    def forget(self, client: viser.ClientHandle) -> None:
+        """A page is gone."""
+        self._framed.pop(client.client_id, None)
+
     def _show(self, client: viser.ClientHandle, snapshot: Snapshot) -> None:
         if snapshot.view.camera != "free":
-            self._framed.pop(client.client_id, None)
+            self.forget(client)
             _place(client, snapshot, snapshot.view.camera)
             return
         camera = client.camera
