@@ -13,7 +13,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.inspector.scene.cameras import Cameras, covered_share, framed_points, overview
+from app.inspector.scene.cameras import Cameras, covered_share, framed_points, in_view, overview
+from app.session.snapshot import Snapshot
 from app.session.worker import Session
 from c2nav_engine.geometry import Point
 from tests.helpers import stage
@@ -48,6 +49,21 @@ def test_every_point_is_framed_in_what_nothing_covers(
     assert places[:, 1].max() <= 1.0 - 2.0 * covered
 
 
+@given(POINTS, POINTS, st.floats(0.5, 2.5), st.floats(0.0, 0.4))
+def test_in_view_is_what_the_picture_shows_where_nothing_covers(
+    framed_m: list[Point], points_m: list[Point], aspect: float, covered: float
+):
+    eye, target = overview(framed_m, aspect, covered=covered)
+    assert in_view(framed_m, eye, aspect, covered=covered)
+    if (np.subtract(points_m, eye) @ np.subtract(target, eye) <= 1e-6).any():
+        assert not in_view(points_m, eye, aspect, covered=covered)
+        return
+    across, up = pictured(eye, target, points_m, aspect).T
+    margin = np.minimum(1.0 - np.abs(across), np.minimum(up + 1.0, 1.0 - 2.0 * covered - up)).min()
+    if abs(margin) > 1e-6:
+        assert in_view(points_m, eye, aspect, covered=covered) == (margin > 0.0)
+
+
 @pytest.mark.parametrize(("width_px", "height_px"), [(1100, 970), (460, 608)])
 def test_a_longer_instruction_covers_more_but_never_most_of_the_map(width_px: int, height_px: int):
     snapshot = Session(stage.opened_live()).snapshot
@@ -75,6 +91,9 @@ class Camera:
     fov: float = 1.0
     heard: list[Callable[[Any], None]] = field(default_factory=list)
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, np.array(value) if name == "position" else value)
+
     def on_update(self, callback: Callable[[Any], None]) -> None:
         self.heard.append(callback)
 
@@ -82,7 +101,7 @@ class Camera:
         """What a page says whenever its camera or its size changes."""
         for name, value in seen.items():
             setattr(self, name, value)
-        self.position = np.asarray(self.position, np.float32).astype(np.float64)
+        self.position = self.position.astype(np.float32).astype(np.float64)
         for callback in self.heard:
             callback(self)
 
@@ -98,14 +117,39 @@ class Client:
         return nullcontext()
 
 
+@dataclass
+class Pages:
+    """A server with one page, which connected while its map was small."""
+
+    here: Snapshot = field(default_factory=lambda: Session(stage.opened_live()).snapshot)
+    camera: Camera = field(default_factory=lambda: Camera(64, 64))
+
+    def __post_init__(self) -> None:
+        self._client = Client(self.camera)
+        self._cameras = Cameras(cast("Any", self), lambda: self.here)
+        self._cameras.greet(cast("Any", self._client))
+        self.step_to(0.0)
+
+    def get_clients(self) -> dict[int, Client]:
+        return {7: self._client}
+
+    def step_to(self, east_m: float) -> list[Point]:
+        """Show the body so far from where it was; gives what should be in the picture."""
+        track = self.here.story.track
+        body = track.footsteps[self.here.here.step]
+        x, y, z = body.pose.position_m
+        moved = replace(body, pose=replace(body.pose, position_m=(x + east_m, y, z)))
+        story = replace(self.here.story, track=replace(track, footsteps=(moved,)))
+        self.here = replace(self.here, story=story)
+        self._cameras.update(self.here)
+        return framed_points(self.here)
+
+
 @pytest.fixture
 def greeted() -> tuple[Camera, list[Point]]:
-    """A page that connected while its map was small, and what must be in the picture."""
-    session = Session(stage.opened_live())
-    camera = Camera(64, 64)
-    cameras = Cameras(cast("Any", None), lambda: session.snapshot)
-    cameras.greet(cast("Any", Client(camera)))
-    return camera, framed_points(session.snapshot)
+    """Such a page, and what must be in the picture."""
+    pages = Pages()
+    return pages.camera, framed_points(pages.here)
 
 
 @pytest.mark.parametrize(("width_px", "height_px"), [(772, 788), (400, 900), (1700, 968)])
@@ -124,4 +168,19 @@ def test_a_camera_that_was_moved_stays_where_it_is(greeted):
     moved = np.add(camera.position, (0.0, -0.5, 0.0))
     camera.report(position=moved)
     camera.report(image_width=600, image_height=788)
+    assert np.allclose(camera.position, moved)
+
+
+def test_a_body_that_walks_out_of_the_view_takes_an_unmoved_camera_along():
+    pages = Pages()
+    camera = pages.camera
+    camera.report(image_width=772, image_height=788)
+    at_first = tuple(camera.position)
+    pages.step_to(0.2)
+    assert tuple(camera.position) == at_first
+    points_m = pages.step_to(12.0)
+    assert np.abs(pictured(camera.position, camera.look_at, points_m, 772 / 788)).max() <= 1.0
+    moved = np.add(camera.position, (0.0, -0.5, 0.0))
+    camera.report(position=moved)
+    pages.step_to(30.0)
     assert np.allclose(camera.position, moved)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import pytest
+from playwright.sync_api import TimeoutError as NotYet
 
 from app.session.worker import Session
 from tests.helpers.page import Visit
@@ -27,14 +30,23 @@ key => {
 """Where the middle of a frustum's picture stands on the page, by three.js itself."""
 
 
+def _point_at(seen: Visit, key: str) -> None:
+    """Follow a picture with the pointer until it is lit: the map is framed anew as it opens."""
+    for _ in range(60):
+        x, y = seen.page.evaluate(_MIDDLE, key)
+        seen.page.mouse.move(x, y)
+        with suppress(NotYet):
+            seen.until(f"s.view.hovered === '{key}'", patience_ms=2_000)
+            return
+    pytest.fail(f"pointing at the picture of {key} lights nothing")
+
+
 def test_a_frustum_lights_its_card_and_the_card_its_frustum(live: Opened):
     seen, session = live
     seen.until("s.decision.source === 'proposal'")
     for key in ("left", "front"):
         seen.until_node(f"/fan/{key}")
-        x, y = seen.page.evaluate(_MIDDLE, key)
-        seen.page.mouse.move(x, y)
-        seen.until(f"s.view.hovered === '{key}'")
+        _point_at(seen, key)
         assert "lit" in (seen.card(key).get_attribute("class") or "")
     seen.page.locator("route-strip").hover()
     seen.until("s.view.hovered === ''")

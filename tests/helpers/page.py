@@ -84,11 +84,11 @@ class Visit:
         """The state as the page knows it."""
         return json.loads(self.page.evaluate("JSON.stringify(window.c2nav.state)"))
 
-    def until(self, script: str) -> None:
+    def until(self, script: str, patience_ms: int = PATIENCE_MS) -> None:
         """Wait until an expression over the page's state `s` holds."""
         self.page.wait_for_function(
             f"() => {{ const s = window.c2nav?.state; return Boolean(s?.schema && ({script})); }}",
-            timeout=PATIENCE_MS,
+            timeout=patience_ms,
         )
 
     def card(self, key: str) -> Locator:

@@ -16,7 +16,13 @@ from c2nav_engine.geometry import Point, Pose
 _PITCH = math.radians(66.0)
 """Of the first view: steep enough to look over walls, flat enough to read furniture."""
 
+_RIGHT = np.array([1.0, 0.0, 0.0])
+_UP = np.array([0.0, math.cos(_PITCH), -math.sin(_PITCH)])
+_BACK = np.array([0.0, math.sin(_PITCH), math.cos(_PITCH)])
+"""Axes of the first view in the world."""
+
 _FOV = math.radians(50.0)
+_HALF = math.tan(_FOV / 2.0)
 _USED = 0.85
 """Share of the uncovered picture that the framed points may fill."""
 
@@ -44,7 +50,7 @@ class _Framed:
 
 
 class Cameras:
-    """Moves the clients' cameras; a free camera is framed and, once moved, left to the person."""
+    """Moves the clients' cameras; a free camera keeps all in view until a person moves it."""
 
     def __init__(self, server: viser.ViserServer, here: Callable[[], Snapshot]) -> None:
         """Start above the origin until something is known.
@@ -60,13 +66,13 @@ class Cameras:
         self._framed: dict[int, _Framed] = {}
 
     def update(self, snapshot: Snapshot) -> None:
-        """Frame at first, follow after."""
+        """Follow what is shown, a free camera only where it would lose it."""
         mode = snapshot.view.camera
         opened = snapshot.branches[0].branch_id
         changed: bool = mode != self._mode or opened != self._opened
         self._mode, self._opened = mode, opened
-        if mode != "free" or changed:
-            for client in self._server.get_clients().values():
+        for client in self._server.get_clients().values():
+            if mode != "free" or changed or self._loses(client, snapshot):
                 self._show(client, snapshot)
 
     def greet(self, client: viser.ClientHandle) -> None:
@@ -91,6 +97,16 @@ class Cameras:
         self._framed[client.client_id] = _Framed((width_px, height_px), eye)
         _look(client, eye, target)
 
+    def _loses(self, client: viser.ClientHandle, snapshot: Snapshot) -> bool:
+        """Whether the body or its views are out of a view that nobody has moved."""
+        framed = self._framed.get(client.client_id)
+        if framed is None or _moved(client, framed):
+            return False
+        width_px, height_px = framed.size_px
+        covered = covered_share(snapshot, width_px, height_px)
+        points = framed_points(snapshot)
+        return not in_view(points, framed.eye_m, width_px / height_px, covered=covered)
+
     def _refit(self, client: viser.ClientHandle) -> None:
         """Frame anew where the map has another size and nobody has moved the camera yet.
 
@@ -100,8 +116,12 @@ class Cameras:
         camera = client.camera
         if framed is None or framed.size_px == (camera.image_width, camera.image_height):
             return
-        if math.dist(camera.position.tolist(), framed.eye_m) < _STILL_M:
+        if not _moved(client, framed):
             self._show(client, self._here())
+
+
+def _moved(client: viser.ClientHandle, framed: _Framed) -> bool:
+    return math.dist(client.camera.position.tolist(), framed.eye_m) > _STILL_M
 
 
 def framed_points(snapshot: Snapshot) -> list[Point]:
@@ -134,17 +154,22 @@ def overview(
     """
     points = np.array(points_m)
     target = (points.min(axis=0) + points.max(axis=0)) / 2.0
-    x, y, z = (points - target).T
-    sin, cos = math.sin(_PITCH), math.cos(_PITCH)
-    up, nearer = y * cos - z * sin, y * sin + z * cos
-    half = math.tan(_FOV / 2.0)
-    wide, tall = half * aspect * _USED, half * (1.0 - covered) * _USED
-    needed = np.maximum(np.abs(x) / wide, np.abs(up) / tall) + nearer
-    distance_m = max(float(needed.max()), _NEAREST_M)
+    around = points - target
+    wide, tall = _HALF * aspect * _USED, _HALF * (1.0 - covered) * _USED
+    needed = np.maximum(np.abs(around @ _RIGHT) / wide, np.abs(around @ _UP) / tall)
+    distance_m = max(float((needed + around @ _BACK).max()), _NEAREST_M)
     # What is framed moves down by lifting the aim.
-    target = target + np.array([0.0, cos, -sin]) * (covered * distance_m * half)
-    eye = target + np.array([0.0, sin, cos]) * distance_m
-    return _point(eye), _point(target)
+    target = target + _UP * (covered * distance_m * _HALF)
+    return _point(target + _BACK * distance_m), _point(target)
+
+
+def in_view(points_m: list[Point], eye_m: Point, aspect: float, *, covered: float) -> bool:
+    """Whether all points are seen from an eye that looks as `overview` does; see there."""
+    rays = np.array(points_m) - eye_m
+    reach = -(rays @ _BACK) * _HALF
+    across, up = np.abs(rays @ _RIGHT), rays @ _UP
+    inside = (across < reach * aspect) & (-reach < up) & (up < reach * (1.0 - 2.0 * covered))
+    return bool(inside.all())
 
 
 def _point(array: np.ndarray) -> Point:
