@@ -24,7 +24,10 @@ class PointMemory:
         self.points_m: Float[np.ndarray, "n 3"] = np.empty((0, 3))
 
     def add(self, points_m: Float[np.ndarray, "n 3"], *, travelled_m: float) -> None:
-        """Remember points seen after so much travel, and forget those of long ago."""
+        """Remember points seen after so much travel, and forget those of long ago.
+
+        Of those that share a voxel, the first is kept.
+        """
         recent = self._seen_at_m >= travelled_m - self._forget_after_m
         if not recent.all():
             self._keys, self._seen_at_m = self._keys[recent], self._seen_at_m[recent]

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float, Float32
 
 from c2nav_engine.controller.free_space import FreeSpaceMemory
 from c2nav_engine.controller.sensed import Action, DepthStats, Step, View
@@ -102,8 +102,7 @@ class LiveShell:
         cameras = self._cameras(request.rig)
         images = self._ring.capture(self._renderer, self.pose, cameras)
         depths_m = [self._sensed(image) for image in images]
-        for camera, depth_m in zip(cameras, depths_m, strict=True):
-            self._remember(camera, depth_m)
+        self._remember(cameras, depths_m)
         views = tuple(
             self._view(camera, image, depth_m)
             for camera, image, depth_m in zip(cameras, images, depths_m, strict=True)
@@ -157,11 +156,17 @@ class LiveShell:
     def _sensed(self, image: Image) -> Depth:
         return image.depth_m if self._sensors is None else self._sensors.depth(image.depth_m)
 
-    def _remember(self, camera: CameraOffset, depth_m: Depth) -> None:
+    def _remember(self, cameras: Sequence[CameraOffset], depths_m: Sequence[Depth]) -> None:
+        seen = [self._points(*one) for one in zip(cameras, depths_m, strict=True)]
+        # Where views overlap, the later one counts.
+        points_m = np.concatenate(seen[::-1])
+        self._memory.observe(points_m, travelled_m=self._travelled_m)
+
+    def _points(self, camera: CameraOffset, depth_m: Depth) -> Float[np.ndarray, "points 3"]:
         # Points are placed where the robot believes it is: the memory lives in odometry.
         profile = self._profile
         thinned = DEPTH_STRIDE // camera.depth_stride
-        points_m = depth_points(
+        return depth_points(
             depth_m[::thinned, ::thinned],
             profile.depth,
             world_from_camera(
@@ -171,7 +176,6 @@ class LiveShell:
             far_m=profile.depth_far_m,
             stride=DEPTH_STRIDE,
         )
-        self._memory.observe(points_m, travelled_m=self._travelled_m)
 
     def _view(self, camera: CameraOffset, image: Image, depth_m: Depth) -> View:
         profile = self._profile
