@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import socket
 import threading
 from collections.abc import Generator
 from concurrent.futures import ThreadPoolExecutor
@@ -77,6 +79,24 @@ def test_whoever_asks_for_the_page_is_known_to_the_rest(monkeypatch: pytest.Monk
         assert httpx.get(address, timeout=PATIENCE_S).status_code == 200
         assert asked.is_set()
     front.close()
+
+
+def test_the_end_of_an_answer_does_not_wait_for_an_acknowledgement():
+    async def undelayed() -> int:
+        accepted = asyncio.Future[int]()
+
+        async def take(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+            taken = writer.get_extra_info("socket")
+            accepted.set_result(taken.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+            writer.close()
+
+        listener = listen("127.0.0.1", 0)
+        async with await asyncio.start_server(take, sock=listener):
+            _, writer = await asyncio.open_connection(*listener.getsockname())
+            writer.close()
+            return await accepted
+
+    assert asyncio.run(undelayed())
 
 
 @pytest.mark.parametrize("path", ["", "web_assets/app.js", "api/hello"])

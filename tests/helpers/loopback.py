@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 import threading
 import time
 from collections.abc import Generator
@@ -10,11 +9,13 @@ from contextlib import contextmanager
 
 import uvicorn
 
+from app.gateway.alone import listen
+
 
 @contextmanager
 def on_loopback(server: uvicorn.Server) -> Generator[str]:
     """Serve on a free port; yields the address, which ends in a slash."""
-    listener = socket.create_server(("127.0.0.1", 0))
+    listener = listen("127.0.0.1", 0)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
     thread.start()
     # The server says by a flag alone that it listens.
