@@ -27,6 +27,8 @@ from c2nav_engine.world.kinematics import Body
 from c2nav_engine.world.surface import Surface
 
 Depth = Float32[np.ndarray, "rows columns"]
+Depths = Sequence[Float32[np.ndarray, "_ _"]]
+"""Of one look: cameras are sensed at strides of their own."""
 
 
 @runtime_checkable
@@ -156,7 +158,7 @@ class LiveShell:
     def _sensed(self, image: Image) -> Depth:
         return image.depth_m if self._sensors is None else self._sensors.depth(image.depth_m)
 
-    def _remember(self, cameras: Sequence[CameraOffset], depths_m: Sequence[Depth]) -> None:
+    def _remember(self, cameras: Sequence[CameraOffset], depths_m: Depths) -> None:
         seen = [self._points(*one) for one in zip(cameras, depths_m, strict=True)]
         # Where views overlap, the later one counts.
         points_m = np.concatenate(seen[::-1])
