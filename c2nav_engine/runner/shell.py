@@ -159,7 +159,9 @@ class LiveShell:
         return image.depth_m if self._sensors is None else self._sensors.depth(image.depth_m)
 
     def _remember(self, cameras: Sequence[CameraOffset], depths_m: Depths) -> None:
-        seen = [self._points(*one) for one in zip(cameras, depths_m, strict=True)]
+        seen = [
+            self._points(camera, depth_m) for camera, depth_m in zip(cameras, depths_m, strict=True)
+        ]
         # Where views overlap, the later one counts.
         points_m = np.concatenate(seen[::-1])
         self._memory.observe(points_m, travelled_m=self._travelled_m)

@@ -11,6 +11,7 @@ import pytest
 
 from c2nav_engine.episodes.profile import LAVIRA, VLNCE
 from c2nav_engine.geometry import Pinhole, Pose, world_from_camera
+from c2nav_engine.sensing import embree
 from c2nav_engine.sensing.caster import NO_TRIANGLE
 from c2nav_engine.sensing.conformance import room_depth_m
 from c2nav_engine.sensing.conformance_scenes import LEFT, Room, quad, textured_wall
@@ -90,6 +91,23 @@ def grey_room():
     room = Room().scene()
     grey = Material("grey", (0.5, 0.5, 0.5, 1.0))
     return replace(room, materials=tuple(grey for _ in room.materials))
+
+
+def test_views_are_the_same_however_many_are_cast_at_once(monkeypatch: pytest.MonkeyPatch):
+    renderer = EmbreeRenderer(grey_room())
+    eyes = [
+        world_from_camera(Pose((0.0, 0.0, 0.0), 0.0), height_m=1.0, offset_rad=k) for k in range(5)
+    ]
+
+    def seen(rays: int) -> list[bytes]:
+        monkeypatch.setattr(embree, "BATCH_RAYS", rays)
+        images = renderer.render(eyes, rgb=PINHOLE, depth=PINHOLE, near_m=0.0, far_m=50.0)
+        return [image.rgb.tobytes() + image.depth_m.tobytes() for image in images]
+
+    whole = seen(1 << 20)
+    assert len(set(whole)) == len(eyes)
+    # One at a time, and two with one left over.
+    assert seen(1) == seen(2 * 32 * 32) == whole
 
 
 def test_nothing_hit_shows_the_background():
