@@ -8,6 +8,7 @@ const CURVE = { top: 6, height: 33 };
 const LANES = [50.5, 63, 75.5];
 const EVENTS = 88;
 const LAST = 101;
+const LABEL = { width: 162, rows: [13, 28] };
 const SIGNS = ["●", "▲", "■"];
 const NAMES = ["Seeing", "Transition", "Arriving"];
 
@@ -101,7 +102,7 @@ class TimelineBar extends HTMLElement {
     const ghost = timeline.ghost?.curve ?? [];
     const all = [...timeline.curve, ...ghost];
     const most = Math.max(timeline.band_m * 1.4, ...all.map(([, distance]) => distance));
-    const y = (distance) => CURVE.top + CURVE.height * (1 - distance / most);
+    const y = (this.y = (distance) => CURVE.top + CURVE.height * (1 - distance / most));
     const line = (points) => points.map(([step, d], i) => `${i ? "L" : "M"}${this.x(step)} ${y(d)}`).join("");
     const parts = [
       s("text", { x: 14, y: CURVE.top + 8 }, "distance, m"),
@@ -225,15 +226,29 @@ class TimelineBar extends HTMLElement {
     });
   }
 
+  /** Where the label beside x does not lie on the curve: above it, or below where no leg is named. */
+  row(x, flip) {
+    const { curve, ghost, legs } = this.timeline;
+    const left = flip ? x - LABEL.width : x;
+    const margin = this.x(1) - this.x(0);
+    const beside = (step) => this.x(step) > left - margin && this.x(step) < left + LABEL.width + margin;
+    const near = [...curve, ...(ghost?.curve ?? [])].filter(([step]) => beside(step));
+    const [above, below] = LABEL.rows;
+    const clear = (row) => !near.some(([, distance]) => Math.abs(this.y(distance) - row + 4) < 9);
+    const named = legs.length > 1 && legs.some(({ step }) => beside(step));
+    return clear(above) || named || !clear(below) ? above : below;
+  }
+
   here(width) {
     const line = s("line", { class: "here", y1: 2, y2: 110 });
-    const text = s("text", { class: "heretext", y: 13 });
+    const text = s("text", { class: "heretext" });
     this.followers.push(({ step, decision }) => {
       const x = this.x(step);
-      const flip = x > width - 170;
+      const flip = x > width - LABEL.width - 8;
       line.setAttribute("x1", x);
       line.setAttribute("x2", x);
       text.setAttribute("x", flip ? x - 7 : x + 7);
+      text.setAttribute("y", this.row(x, flip));
       text.setAttribute("text-anchor", flip ? "end" : "start");
       text.textContent = `step ${step}${decision >= 0 ? ` · decision ${decision}` : ""}`;
     });

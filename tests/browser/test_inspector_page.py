@@ -168,7 +168,7 @@ def test_the_page_says_what_it_waits_for_and_stays_alive(browser: Browser):
 TIMELINE = "document.querySelector('timeline-bar')"
 DRAWN = f"""[...{TIMELINE}.shadowRoot.querySelectorAll('svg *')].map((node) => [
   node.tagName, [...node.classList].sort().join(' '), node.textContent,
-  ...['x', 'x1', 'text-anchor', 'd'].map((name) => node.getAttribute(name)),
+  ...['x', 'y', 'x1', 'text-anchor', 'd'].map((name) => node.getAttribute(name)),
 ].join('|'))"""
 
 
@@ -182,6 +182,25 @@ def test_a_timeline_that_follows_looks_like_one_that_is_drawn_anew(recorded: Liv
         seen.page.evaluate(f"{TIMELINE}.draw({TIMELINE}.timeline)")
         assert followed == seen.page.evaluate(DRAWN)
         assert len(seen.page.locator("timeline-bar .mark.now").all()) == 1
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_the_label_of_the_place_in_view_does_not_lie_on_the_curve(recorded: Live, share: float):
+    seen, _ = recorded
+    between = seen.page.evaluate(
+        """share => {
+          const bar = document.querySelector("timeline-bar");
+          const most = Math.max(...bar.timeline.curve.map(([, distance]) => distance));
+          const curve = bar.timeline.curve.map(([step]) => [step, share * most]);
+          curve.push([bar.timeline.last + 1, most]);
+          bar.draw({ ...bar.timeline, curve, ghost: null, legs: [] });
+          const text = bar.shadowRoot.querySelector(".heretext").getBBox();
+          const line = bar.y(share * most);
+          return Math.max(line - text.y - text.height, text.y - line);
+        }""",
+        share,
+    )
+    assert between >= 0.0
 
 
 SCRUB = """
