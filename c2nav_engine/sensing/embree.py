@@ -29,10 +29,6 @@ T = TypeVar("T")
 CHUNK_RAYS = 16_384
 """Rays whose pixels one thread fills at a time."""
 
-BATCH_RAYS = 350_000
-"""Rays cast at once: a fan, half a ring. Their hits take 21 MB; more at once is no faster, and
-the process keeps as much memory as its largest look took."""
-
 SEE_THROUGH_LAYERS = 8
 """Cut-out surfaces that a ray passes before the next one counts as there."""
 
@@ -103,57 +99,44 @@ class EmbreeRenderer:
         far_m: float,
         depth_stride: int = 1,
     ) -> list[Image]:
-        """RGB and depth for several cameras, some at a time; equal pinholes share their rays."""
+        """RGB and depth for several cameras; equal pinholes share their rays."""
         plan = self._plan(rgb, depth, depth_stride)
         look = self._look(rgb)
-        pixels = rgb.height_px, rgb.width_px, 3
-        grid = -(-depth.height_px // depth_stride), -(-depth.width_px // depth_stride)
         range_m = float(near_m), float(far_m)
-        at_once = max(1, BATCH_RAYS // len(plan.directions))
-        images: list[Image] = []
-        for first in range(0, len(world_from_cameras), at_once):
-            batch = world_from_cameras[first : first + at_once]
-            hits = self._cast(self._rays(batch, plan))
-            # Made after the hits: memory that lies above theirs keeps the allocator from handing
-            # it back to the system after every look, which costs a quarter of a fan.
-            images += [
-                Image(
-                    rgb=np.empty(pixels, np.uint8),
-                    depth_m=np.empty(grid, np.float32),
-                    world_from_camera=np.asarray(matrix, np.float64),
-                )
-                for matrix in batch
-            ]
-            self._fill(images[first:], hits, plan, look=look, range_m=range_m)
+        grid = -(-depth.height_px // depth_stride), -(-depth.width_px // depth_stride)
+        images = [
+            Image(
+                rgb=np.empty((rgb.height_px, rgb.width_px, 3), np.uint8),
+                depth_m=np.empty(grid, np.float32),
+                world_from_camera=np.asarray(matrix, np.float64),
+            )
+            for matrix in world_from_cameras
+        ]
+        # One after the other costs no more than all at once, and a whole ring no more memory than
+        # one view: a process keeps what its largest look took.
+        for image in images:
+            self._fill(image, plan, look=look, range_m=range_m)
         return images
 
     def _fill(
-        self,
-        images: Sequence[Image],
-        hits: Hits,
-        plan: RayPlan,
-        *,
-        look: Look,
-        range_m: tuple[float, float],
+        self, image: Image, plan: RayPlan, *, look: Look, range_m: tuple[float, float]
     ) -> None:
-        """Paint what the rays of some views hit."""
+        """Cast one view's rays and paint what they hit."""
+        hits = self._cast(self._rays(image.world_from_camera, plan))
 
-        def paint(chunk: tuple[int, int]) -> None:
-            view, start = chunk
-            stop = min(start + CHUNK_RAYS, len(plan.directions))
-            shift = view * len(plan.directions)
+        def paint(start: int) -> None:
+            part = slice(start, start + CHUNK_RAYS)
             canvas = self._kernels.Canvas(
-                images[view].rgb.reshape(-1, 3),
-                images[view].depth_m.reshape(-1),
-                plan.rgb_pixels[start:stop],
-                plan.depth_pixels[start:stop],
+                image.rgb.reshape(-1, 3),
+                image.depth_m.reshape(-1),
+                plan.rgb_pixels[part],
+                plan.depth_pixels[part],
             )
-            part = Hits(*(array[shift + start : shift + stop] for array in hits))
-            self._kernels.keep_depths(canvas, part.t_hit, range_m)
-            self._kernels.paint(canvas, part, self._atlas, look)
+            found = Hits(*(array[part] for array in hits))
+            self._kernels.keep_depths(canvas, found.t_hit, range_m)
+            self._kernels.paint(canvas, found, self._atlas, look)
 
-        starts = range(0, len(plan.directions), CHUNK_RAYS)
-        self._each(paint, [(view, start) for view in range(len(images)) for start in starts])
+        self._each(paint, range(0, len(plan.directions), CHUNK_RAYS))
 
     def rays(
         self,
@@ -163,20 +146,15 @@ class EmbreeRenderer:
         depth: Pinhole,
     ) -> Float32[np.ndarray, "rays 6"]:
         """The rays of `render` with whole depth pictures, in the order in which it casts them."""
-        return self._rays(world_from_cameras, self._plan(rgb, depth))
+        plan = self._plan(rgb, depth)
+        return np.concatenate([self._rays(matrix, plan) for matrix in world_from_cameras])
 
     def _rays(
-        self, world_from_cameras: Sequence[Float[np.ndarray, "4 4"]], plan: RayPlan
+        self, world_from_camera: Float[np.ndarray, "4 4"], plan: RayPlan
     ) -> Float32[np.ndarray, "rays 6"]:
-        directions = plan.directions
-        count = len(directions)
-        rays = np.empty((count * len(world_from_cameras), 6), np.float32)
-
-        def fill(view: int) -> None:
-            matrix = np.asarray(world_from_cameras[view], np.float32)
-            self._kernels.fill_rays(rays[view * count : (view + 1) * count], directions, matrix)
-
-        self._each(fill, range(len(world_from_cameras)))
+        rays = np.empty((len(plan.directions), 6), np.float32)
+        matrix = np.asarray(world_from_camera, np.float32)
+        self._kernels.fill_rays(rays, plan.directions, matrix)
         return rays
 
     def cast(
