@@ -1,12 +1,15 @@
 """The `c2nav` command: one small function per subcommand, each in `app.commands`.
 
-Exit codes: 0 done; 1 a check found a difference or an episode ended in `error`; 2 bad usage or bad
-input, with one message on standard error; 130 interrupted, with everything finished kept.
+Exit codes: 0 done; 1 a check found a difference, an episode ended in `error`, or standard output
+was closed before the end, as by `| head`; 2 bad usage or bad input, with one message on standard
+error; 130 interrupted, with everything finished kept.
 """
 
 from __future__ import annotations
 
 import importlib
+import os
+import select
 import sys
 from collections.abc import Callable, Sequence
 
@@ -41,21 +44,42 @@ COMMANDS = (
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run one subcommand and exit with its code."""
+    try:
+        try:
+            code = _run(arguments)
+        finally:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        if not _output_closed():
+            raise
+        # The rest goes nowhere: else the interpreter complains about it once more at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 1
+    sys.exit(code)
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    """The exit code; errors of ours are told in one message."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = "--debug" in words
     words = [word for word in words if word != "--debug"]
     try:
-        code = _dispatch(words)
+        return _dispatch(words)
     except KeyboardInterrupt:
         sys.stderr.write("interrupted; everything finished is kept\n")
-        code = 130
+        return 130
     except C2NavError as error:
         if debug:
             raise
         sys.stderr.write(f"c2nav: {error}\n")
-        code = 2 if isinstance(error, InputError | MissingExtra) else 1
-        code = 2 if isinstance(error, RankerStopped) else code
-    sys.exit(code)
+        return 2 if isinstance(error, InputError | MissingExtra | RankerStopped) else 1
+
+
+def _output_closed() -> bool:
+    """Whether nobody can read standard output any more."""
+    asked = select.poll()
+    asked.register(sys.stdout.fileno(), 0)
+    return any(event & select.POLLERR for _, event in asked.poll(0))
 
 
 def _dispatch(words: list[str]) -> int:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 
 import pytest
 
@@ -51,3 +54,24 @@ def test_an_episode_is_shown_with_its_legs(capsys):
     shown = json.loads(capsys.readouterr().out)
     assert " ".join(shown["legs"])[:4] == shown["instruction"][:4]
     assert len(shown["legs"]) >= 2
+
+
+@pytest.mark.parametrize("words", [["--help"], ["episodes", "list", "builtin"], ["doctor"]])
+def test_output_that_nobody_reads_ends_a_command_quietly(words):
+    read, write = os.pipe()
+    os.close(read)
+    code = "import sys; from app.cli import main; main(sys.argv[1:])"
+    done = subprocess.run(
+        [sys.executable, "-c", code, *words], stdout=write, stderr=subprocess.PIPE, check=False
+    )
+    os.close(write)
+    assert (done.returncode, done.stderr) == (1, b"")
+
+
+def test_a_broken_pipe_elsewhere_is_told(monkeypatch):
+    def command() -> int:
+        raise BrokenPipeError("of a worker")
+
+    monkeypatch.setattr("app.cli._loaded", lambda name: command)
+    with pytest.raises(BrokenPipeError, match="of a worker"):
+        main(["doctor"])
