@@ -8,6 +8,7 @@ from fastapi import APIRouter, Body, Path
 from fastapi.responses import JSONResponse, Response, StreamingResponse
 
 from app.gateway.feed import Feed
+from app.gateway.refusing import RefusingRoute
 from app.session.commands import Answering, AnyCommand
 from app.session.worker import Session, StaleCommand
 
@@ -16,7 +17,7 @@ _FOREVER = "public, max-age=31536000, immutable"
 
 def api(session: Session, feed: Feed) -> APIRouter:
     """Routes below `/api`."""
-    router = APIRouter(prefix="/api")
+    router = APIRouter(prefix="/api", route_class=RefusingRoute)
 
     @router.get("/state")
     def state() -> Response:

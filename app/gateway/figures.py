@@ -13,6 +13,7 @@ from fastapi.responses import JSONResponse, Response
 from app.figures.figure import FigureSpec, Kind, inches
 from app.figures.plan import Plan
 from app.figures.recipe import Run, write_figure
+from app.gateway.refusing import RefusingRoute
 from app.inspector.scene.ground import ground_of
 from app.session.snapshot import Snapshot
 from app.session.story import Story
@@ -33,7 +34,7 @@ _DRAWING = threading.Lock()
 
 def figures(session: Session) -> APIRouter:
     """The route below `/api`."""
-    router = APIRouter(prefix="/api")
+    router = APIRouter(prefix="/api", route_class=RefusingRoute)
     grounds = _Grounds(session)
 
     @router.get("/figure.{file}")

@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.gateway.alone import listen, serve_alone
 from app.gateway.assets import assets
 from app.gateway.doors import Doors
+from app.gateway.refusing import RefusingRoute
 from app.pages.judge import judge_page, question_json
 from app.reviews.desk import Desk, Taken
 from app.reviews.study import Person, read_study, study_names
@@ -40,7 +41,7 @@ class Answer(BaseModel):
 
 def judging(desks: Sequence[Desk]) -> APIRouter:
     """Routes of the judging page; a token in every call says who asks."""
-    router = APIRouter(prefix="/judge", include_in_schema=False)
+    router = APIRouter(prefix="/judge", include_in_schema=False, route_class=RefusingRoute)
 
     @router.get("")
     def page() -> Response:

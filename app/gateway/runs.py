@@ -18,6 +18,7 @@ from app.figures.plan import Plan
 from app.gateway.alone import names_of, serve_alone
 from app.gateway.assets import assets, serve_assets
 from app.gateway.doors import Doors
+from app.gateway.refusing import RefusingRoute
 from app.pages.cases import cases_page
 from app.pages.compare import compare_page, pair_page
 from app.pages.index import curation, query
@@ -104,7 +105,7 @@ class Caption(Said):
 
 def run_pages(pages: RunPages) -> APIRouter:
     """Routes of the pages about the runs of a library."""
-    router = APIRouter(include_in_schema=False)
+    router = APIRouter(include_in_schema=False, route_class=RefusingRoute)
     _reading(router, pages)
     _comparing(router, pages)
     _changing(router, pages)

@@ -8,9 +8,12 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, TypeAdapter, field_validator
 
 from c2nav_engine.contract.outcome import Key
+
+Text = Annotated[str, Field(max_length=4096)]
+"""Names and keys of a state. The bound also refuses what is no Unicode."""
 
 
 class Command(BaseModel):
@@ -23,7 +26,7 @@ class Command(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    id: str | None = None
+    id: Text | None = None
     tab: str = Field(default="", max_length=40)
 
 
@@ -52,7 +55,7 @@ class Go(Command):
     """Go to a decision or a step of a branch; −1 leaves a number open."""
 
     type: Literal["go"] = "go"
-    branch: str = ""
+    branch: Text = ""
     decision: int = -1
     step: int = -1
 
@@ -80,9 +83,9 @@ class Open(Command):
     """Open an episode or trace of the source; empty fields keep what is chosen."""
 
     type: Literal["open"] = "open"
-    entry: str = ""
-    variant: str = ""
-    ranker: str = ""
+    entry: Text = ""
+    variant: Text = ""
+    ranker: Text = ""
 
 
 class Jump(Command):
@@ -106,7 +109,7 @@ class Press(Answering):
     """Rank one more alternative, by key or by its letter's position (0 is A)."""
 
     type: Literal["press"] = "press"
-    key: Key = ""
+    key: Text = ""
     position: int = -1
 
 
@@ -114,7 +117,16 @@ class Arrange(Answering):
     """Rank by dragging: tiers of keys, best first."""
 
     type: Literal["arrange"] = "arrange"
-    tiers: tuple[tuple[Key, ...], ...]
+    tiers: tuple[tuple[Text, ...], ...]
+
+    @field_validator("tiers")
+    @classmethod
+    def _each_once(cls, tiers: tuple[tuple[Key, ...], ...]) -> tuple[tuple[Key, ...], ...]:
+        keys = [key for tier in tiers for key in tier]
+        if len(set(keys)) < len(keys):
+            message = f"expected each alternative once, came {keys}"
+            raise ValueError(message)
+        return tiers
 
 
 class Tie(Answering):
@@ -174,7 +186,7 @@ class Hover(Command):
     """Light an alternative in strip and map; "" for none."""
 
     type: Literal["hover"] = "hover"
-    key: Key = ""
+    key: Text = ""
 
 
 class Camera(Command):
@@ -196,13 +208,13 @@ class Place(Command):
     """Ask where a place was seen: a point, a ray of the map, a picture's pixel, or the goal."""
 
     type: Literal["place"] = "place"
-    point_m: tuple[float, float, float] | None = None
-    ray_from_m: tuple[float, float, float] | None = None
-    ray_along: tuple[float, float, float] | None = None
+    point_m: tuple[FiniteFloat, FiniteFloat, FiniteFloat] | None = None
+    ray_from_m: tuple[FiniteFloat, FiniteFloat, FiniteFloat] | None = None
+    ray_along: tuple[FiniteFloat, FiniteFloat, FiniteFloat] | None = None
     goal: bool = False
     sha256: str = Field(default="", max_length=64)
-    column: float = 0.0
-    row: float = 0.0
+    column: FiniteFloat = 0.0
+    row: FiniteFloat = 0.0
 
 
 class ForgetPlace(Command):
@@ -232,7 +244,7 @@ class Better(Command):
     """Name the better alternative, by key or by its letter's position (0 is A), or take it back."""
 
     type: Literal["better"] = "better"
-    key: Key = ""
+    key: Text = ""
     position: int = -1
 
 
@@ -261,7 +273,7 @@ class Tags(Command):
     """Replace the list of tags to choose from."""
 
     type: Literal["tags"] = "tags"
-    names: tuple[str, ...] = Field(max_length=100)
+    names: tuple[Annotated[str, Field(max_length=60)], ...] = Field(max_length=100)
 
 
 class Flag(Command):

@@ -88,7 +88,7 @@ class Desk:
         self.searches: dict[str, Search] = {}
         self._generation = 0
         self._branch_serial = 0
-        self.snapshot = self._open(opened.first)
+        self.snapshot = self._enter(opened.first, opened.open(opened.first))
 
     @property
     def allowed(self) -> bool:
@@ -126,16 +126,20 @@ class Desk:
         self.say(problem, fault=True)
 
     def reopen(self, choice: Choice) -> None:
-        """Open another entry, variant or ranker in place of what is open."""
+        """Open another entry, variant or ranker in place of what is open.
+
+        Raises:
+            C2NavError: When that cannot be opened; what is open goes on.
+        """
+        opening = self.opened.open(choice)
         for run in self.runs.values():
             run.close()
         self.runs.clear()
         kept = self.snapshot
-        fresh = self._open(choice)
+        fresh = self._enter(choice, opening)
         self.snapshot = replace(fresh, version=kept.version, view=kept.view, who=kept.who)
 
-    def _open(self, choice: Choice) -> Snapshot:
-        opening = self.opened.open(choice)
+    def _enter(self, choice: Choice, opening: Opening) -> Snapshot:
         self._generation += 1
         self.branches.clear()
         self.stories.clear()
@@ -278,7 +282,8 @@ class Desk:
         self.assessing = False
         if generation != self._generation:
             return
-        grown = len(assessments) > len(self.snapshot.assessed.get(branch_id, {}))
+        known = self.snapshot.assessed.get(branch_id)
+        grown = known is None or len(assessments) > len(known)
         if grown:
             self.change(assessed={**self.snapshot.assessed, branch_id: assessments})
             self.assess(self.snapshot.branch.branch_id)

@@ -148,6 +148,7 @@ def commit(desk: Desk, branch_id: str, override: Override | None) -> None:
     try:
         run.commit(override)
     except C2NavError as error:
+        desk.change(playing="")
         desk.say(str(error), fault=True)
         return
     proposals = dict(desk.snapshot.proposals)
@@ -171,7 +172,7 @@ def offer_fork(desk: Desk) -> None:
     decision = desk.snapshot.decision
     if decision is None:
         return
-    if desk.opened.fork is None:
+    if desk.opened.fork is None or desk.snapshot.no_scene:
         desk.say(
             "Forking drives the robot again, so it needs the scene: open with --scenes DIR",
             fault=True,

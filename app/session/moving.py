@@ -126,11 +126,16 @@ def jump(desk: Desk, to: str) -> None:
 def _suspect(desk: Desk, *, worst: bool) -> None:
     suspects = desk.snapshot.suspects
     if not suspects:
-        desk.say("No suspect decision in this branch")
+        desk.say(desk.snapshot.no_suspects)
         return
-    over = [s.decision for s in suspects if (s.regret_m or 0.0) >= BAD_M]
-    first = min(over, default=suspects[0].decision)
-    desk.stand(desk.snapshot.story.stop_of_decision(suspects[0].decision if worst else first))
+    chosen = suspects[0]
+    if not worst:
+        over = [s for s in suspects if (s.regret_m or 0.0) >= BAD_M]
+        if not over:
+            desk.say(f"No decision cost more than {BAD_M:.0f} m; Shift+B goes to the worst")
+            return
+        chosen = min(over, key=lambda suspect: suspect.decision)
+    desk.stand(desk.snapshot.story.stop_of_decision(chosen.decision))
 
 
 def _first(

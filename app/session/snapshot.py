@@ -314,6 +314,24 @@ class Snapshot:
         return suspects_of(self.assessments)
 
     @property
+    def no_suspects(self) -> str:
+        """Why `suspects` is empty, in words."""
+        made = sum(not decision.pending for decision in self.story.decisions)
+        if self.view.blind:
+            return "Not shown while answers are covered"
+        if self.no_scene:
+            return "Measured over the scene's floor: open with --scenes DIR"
+        if self.story.header.episode.goal_m is None:
+            return "The goal of this episode is not known"
+        if made and self.branch.branch_id not in self.assessed:
+            return "Measuring…"
+        if made and not self.assessments:
+            return "No way over this floor leads to the goal, so nothing can be measured"
+        if len(self.assessments) < made:
+            return "Measuring…"
+        return "None so far" if self.branch.running else "None"
+
+    @property
     def proposal(self) -> Ranked | None:
         """What the ranker says to the pending decision, when that is in view."""
         decision = self.decision

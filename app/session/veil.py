@@ -49,6 +49,8 @@ def veiled(snapshot: Snapshot) -> Snapshot:
         exchanges=branch.exchanges[:kept],
         pending=pending,
         footer=branch.footer if over else None,
+        # What it left is not drawn: its answers are the covered ones up to the fork.
+        parent="",
     )
     shortened = _without_truth(
         story_of(cut.header, cut.exchanges, pending=pending, footer=cut.footer)

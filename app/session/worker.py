@@ -170,14 +170,17 @@ class Session:
             self._guarded(message)
 
     def _guarded(self, work: Message) -> None:
-        """Whatever goes wrong is said on the page; the worker lives on."""
+        """Whatever goes wrong is said on the page and ends playing; the worker lives on."""
         try:
             work(self._desk)
+            return
         except C2NavError as error:
-            self._desk.say(str(error), fault=True)
+            problem = str(error)
         except Exception as error:
             log.exception("a command failed")
-            self._desk.say(f"{type(error).__name__}: {error}", fault=True)
+            problem = f"{type(error).__name__}: {error}"
+        self._desk.change(playing="")
+        self._desk.say(problem, fault=True)
 
     def _publish(self) -> None:
         if self._desk.snapshot is self._behind:

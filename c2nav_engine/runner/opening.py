@@ -208,7 +208,8 @@ class Workbench:
                 run.feed(recorded[len(run.exchanges)])
             else:
                 run.advance()
-        run.commit(override)
+        # What the parent's ranker said to the same question stays beside the other answer.
+        run.feed(replace(forked_at, response=override.outcome, override=override))
         return run
 
     def _seat(self, stage: Stage) -> Seat:

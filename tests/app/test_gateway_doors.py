@@ -118,6 +118,28 @@ def test_an_unknown_command_is_refused(client: TestClient):
     assert client.post("/api/commands", json={"type": "rm"}).status_code == 422
 
 
+@pytest.mark.parametrize(
+    "body",
+    [
+        '{"type": "move", "by": "step", "count": NaN}',
+        '{"type": "move", "by": "step", "count": 1e999}',
+        '{"type": "place", "sha256": "", "column": 1, "row": NaN}',
+        '{"type": "place", "goal": false, "point_m": [0, 1e999, 0]}',
+        '{"type": "hover", "key": "\\ud800"}',
+        '{"type": "name", "who": "\\ud800"}',
+        '{"type": "\\ud800"}',
+        '{"type": "arrange", "id": "b0.0.0", "tiers": [["left"], ["left"]]}',
+    ],
+)
+def test_what_is_no_command_is_told_and_harms_nothing(client: TestClient, body: str):
+    answer = client.post(
+        "/api/commands", content=body, headers={"Content-Type": "application/json"}
+    )
+    assert answer.status_code == 422
+    assert answer.json()["detail"]
+    assert client.get("/api/state").status_code == 200
+
+
 def test_a_known_command_is_accepted(client: TestClient):
     state = client.get("/api/state").json()
     body = {"type": "move", "by": "decision", "count": 1, "id": state["id"]}

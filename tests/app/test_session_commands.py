@@ -7,12 +7,16 @@ from dataclasses import replace
 import pytest
 
 from app.session import commands as c
+from app.session import moving
 from app.session.branches import Origin
+from app.session.opened import Choice, Opening
 from app.session.snapshot import Snapshot
+from app.session.state_json import state_json
 from app.session.worker import Session, StaleCommand
 from c2nav_engine.contract.outcome import Abstention, Ordering
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.contract.question import Question
+from c2nav_engine.errors import UsageError
 from c2nav_engine.geometry import Pose
 from tests.helpers import stage
 from tests.helpers.watched import Watched
@@ -130,6 +134,81 @@ def test_a_past_override_first_names_its_cost_then_forks(recorded: Watched):
         root.exchanges[: snapshot.story.decisions[3].exchange]
         == (snapshot.branch.exchanges[: snapshot.story.decisions[3].exchange])
     )
+
+
+def test_without_the_scene_a_fork_is_refused_before_it_is_offered():
+    recording = stage.opened_recording()
+    opened = replace(
+        recording, open=lambda choice: replace(recording.open(choice), no_scene="no scene here")
+    )
+    session = Session(opened)
+    recorded = Watched(session)
+    try:
+        recorded.do(c.Go(decision=3))
+        recorded.do(c.Press(key="left"))
+        recorded.do(c.Commit())
+        snapshot = recorded.until(lambda s: s.notice.fault)
+        assert "--scenes" in snapshot.notice.text
+        assert snapshot.offer is None
+        assert snapshot.draft.keys == ("left",)
+        assert "--scenes" in snapshot.no_suspects
+    finally:
+        session.close()
+
+
+def test_answers_can_be_covered_in_a_fork(recorded: Watched):
+    recorded.do(c.Go(decision=3))
+    recorded.do(c.Press(key="left"))
+    recorded.do(c.Commit())
+    recorded.do(c.Commit())
+    recorded.until(lambda s: s.branch.origin is Origin.FORK and s.proposal is not None)
+    recorded.do(c.Cover(on=True))
+    recorded.do(c.Go(decision=2))
+    snapshot = recorded.until(lambda s: s.covered and s.here.decision == 2)
+    assert state_json(snapshot)["decision"]["number"] == 2
+    assert snapshot.reasked_at(2) == ()
+
+
+def test_what_cannot_be_opened_leaves_the_live_episode_as_it_was():
+    known = stage.opened_live()
+
+    def only_scripted(choice: Choice) -> Opening:
+        if choice.ranker != "scripted":
+            message = f"expected a ranker that is to be had, came {choice.ranker}"
+            raise UsageError(message)
+        return known.open(choice)
+
+    session = Session(replace(known, open=only_scripted))
+    live = Watched(session)
+    try:
+        live.until(proposed(0))
+        live.do(c.Step())
+        live.until(proposed(1))
+        live.do(c.Open(ranker="openai-chat"))
+        snapshot = live.until(lambda s: s.notice.fault)
+        assert "openai-chat" in snapshot.notice.text
+        assert snapshot.chooser.choice.ranker == "scripted"
+        live.do(c.RunTo(until="end"))
+        assert len(live.until(lambda s: s.branch.footer is not None).story.decisions) > 2
+    finally:
+        session.close()
+
+
+def test_a_fault_ends_playing(monkeypatch: pytest.MonkeyPatch, live: Watched):
+    live.until(proposed(0))
+    told: list[Snapshot] = []
+    live.session.subscribe(told.append)
+
+    def broken(*_: object) -> None:
+        message = "nobody foresaw this"
+        raise ZeroDivisionError(message)
+
+    monkeypatch.setattr(moving.driving, "commit_proposal", broken)
+    live.do(c.RunTo(until="end"))
+    assert not live.until(lambda s: s.notice.fault).playing
+    live.do(c.Camera(mode="top"))
+    snapshot = live.until(lambda s: s.view.camera == "top")
+    assert snapshot.notice.serial == 1
 
 
 def test_stepping_back_never_changes_what_happened(recorded: Watched):

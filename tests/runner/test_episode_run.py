@@ -161,7 +161,11 @@ def test_a_fork_shares_its_parents_past_and_takes_the_other_answer(bench, record
     child = bench.fork(spec, trace.exchanges, override)
     before, after = still(parent.exchanges)[: asked.index], still(child.exchanges)[: asked.index]
     assert difference(tuple(before), tuple(after)) is None
-    assert child.exchanges[asked.index].response == override.outcome
+    left = child.exchanges[asked.index]
+    assert left.response == override.outcome
+    # What the ranker said to the same question stays beside the other answer.
+    assert left.ranked is not None
+    assert left.ranked == asked.ranked
     assert child.header.parent_sha256 == trace.sha256
     run_to_end(child)
     assert read_trace(tmp_path / "fork.mcap").header.fork_decision == asked.decision

@@ -102,7 +102,7 @@ def _spent(snapshot: Snapshot) -> str:
 
 def _suspects(snapshot: Snapshot) -> Markup:
     if not snapshot.suspects:
-        return m.note("None so far")
+        return m.note(snapshot.no_suspects)
     decisions = snapshot.story.decisions
     return m.table(
         ["", "", ""],
