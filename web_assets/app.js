@@ -81,7 +81,7 @@ subscribe((now, changed) => {
     seen.textContent = age ? `view of ${age} ${age === 1 ? "step" : "steps"} ago` : "";
   }
   if (changed.has("pages") || changed.has("driver")) {
-    const driver = now.driver && now.driver !== tab ? ` · ${now.driver} is driving` : "";
+    const driver = now.driver ? ` · ${now.driver === tab ? "this" : "another"} one is driving` : "";
     tabs.textContent = now.pages > 1 ? `${now.pages} pages open${driver}` : "";
     tabs.hidden = now.pages < 2;
   }

@@ -12,6 +12,10 @@ class FigureDialog {
   open() {
     this.dialog ??= this.build();
     const here = state.place.decision;
+    const [compare] = this.kind.querySelectorAll("option[value=compare]");
+    compare.disabled = !state.branches.find(({ id }) => id === state.branch.id)?.parent;
+    compare.title = compare.disabled ? "for a fork in view" : "";
+    if (compare.selected && compare.disabled) this.kind.value = "strip";
     this.decisions.value = here < 0 ? "0" : `${here}`;
     this.dialog.showModal();
     this.draw();

@@ -259,6 +259,7 @@ def _recorded(path: Path, scenes: Path | None, reasked: Mapping[str, ByDecision]
         footer=trace.footer,
         trace_sha256=trace.sha256,
         source=path.name,
+        trace=str(path),
         scene=None if why else load,
         surface=None if why else floor,
         no_scene=why,

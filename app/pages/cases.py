@@ -67,6 +67,7 @@ def cases_page(library: Library, query: Query, *, page: int = 1, menu: Sequence[
         marks=[tag for tag, _ in curation.marks(store)],
         sorts=SORTS,
         unread=library.progress,
+        looked=library.looked,
         entry=partial(_entry, library),
     )
 

@@ -67,6 +67,7 @@ class Library:
         self._courses = Courses(scenes)
         self._retry = scenes is not None
         self._progress = Progress(0, 0)
+        self._looked = False
         self._closing = threading.Event()
         self._worker = threading.Thread(target=self._watch, name="c2nav-library", daemon=True)
 
@@ -74,6 +75,11 @@ class Library:
     def progress(self) -> Progress:
         """How far the latest look at the folder is."""
         return self._progress
+
+    @property
+    def looked(self) -> bool:
+        """Whether the whole folder was looked at once: before, what is missing may yet come."""
+        return self._looked
 
     def start(self) -> None:
         """Keep the index up to date until `close`."""
@@ -86,6 +92,7 @@ class Library:
         )
         # A scene that is not there stays away: once is enough to look for it.
         self._retry = False
+        self._looked = True
         return self._progress
 
     def _watch(self) -> None:

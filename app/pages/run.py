@@ -121,6 +121,7 @@ def run_page(library: Library, run: str, *, against: str = "", menu: Sequence[st
         recorded=bool(manifest),
         tasks=library.tasks(run),
         unread=library.progress,
+        looked=library.looked,
         facts=_facts(manifest),
         arms=[_arm(library.root, run, members, manifest) for members in _arms(found)],
         differs=differences(manifest, library.manifest(against))

@@ -35,6 +35,7 @@ class Branch:
         fork_decision: Decision at which it left its parent; −1 for a root.
         trace_sha256: Digest of the trace it was read from; "" for a live one.
         source: File name of that trace, for people.
+        trace: Path of its trace, which is there once it has ended; "" where nothing is recorded.
     """
 
     branch_id: str
@@ -47,6 +48,7 @@ class Branch:
     fork_decision: int = -1
     trace_sha256: str = ""
     source: str = ""
+    trace: str = ""
 
     @property
     def running(self) -> bool:

@@ -160,6 +160,13 @@ class Commit(Answering):
     why: str = Field(default="", max_length=2000)
 
 
+class Why(Command):
+    """Say why, beside the ranking that is being made; it is kept with the answer."""
+
+    type: Literal["why"] = "why"
+    text: str = Field(max_length=2000)
+
+
 class Cancel(Command):
     """Stop waiting for the model; a person may answer instead."""
 
@@ -354,6 +361,7 @@ AnyCommand = Annotated[
     | TakeBack
     | Clear
     | Commit
+    | Why
     | Cancel
     | AskAgain
     | Consent

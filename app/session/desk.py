@@ -198,6 +198,7 @@ class Desk:
             footer=opening.footer if run is None else run.footer,
             trace_sha256=opening.trace_sha256,
             source=opening.source,
+            trace=opening.trace if run is None else run.trace,
         )
 
     def new_branch_id(self) -> str:
@@ -296,7 +297,7 @@ class Desk:
         before = self.snapshot
         self.change(branch=branch, story=story, stop=stop, parent=self.stories.get(branch.parent))
         if self.snapshot.token != before.token:
-            self.change(draft=Draft(), offer=None)
+            self.change(draft=Draft(), why="", offer=None)
 
     @property
     def at_frontier(self) -> bool:

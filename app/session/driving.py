@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import PurePath
 
 from app.session.branches import Branch, Origin, fork_estimate, median_query_s
 from app.session.desk import Desk, Errand, Message
@@ -42,15 +43,13 @@ def refresh(desk: Desk, branch_id: str) -> None:
     run = desk.runs[branch_id]
     old = desk.branches[branch_id]
     desk.put(
-        Branch(
-            branch_id,
-            old.origin,
-            old.header,
-            tuple(run.exchanges),
+        replace(
+            old,
+            exchanges=tuple(run.exchanges),
             pending=run.pending,
             footer=run.footer,
-            parent=old.parent,
-            fork_decision=old.fork_decision,
+            trace_sha256=run.trace_sha256,
+            source=PurePath(run.trace).name if run.trace_sha256 else "",
         )
     )
     if run.trace_sha256:
@@ -153,7 +152,7 @@ def commit(desk: Desk, branch_id: str, override: Override | None) -> None:
         return
     proposals = dict(desk.snapshot.proposals)
     proposals.pop(branch_id, None)
-    desk.change(proposals=proposals, draft=Draft(), offer=None)
+    desk.change(proposals=proposals, draft=Draft(), why="", offer=None)
     settle(desk, branch_id)
     if desk.snapshot.branch.branch_id == branch_id:
         desk.stand(len(desk.snapshot.story.stops) - 1)
@@ -164,7 +163,7 @@ def override_of(desk: Desk, why: str) -> Override:
     decision = desk.snapshot.decision
     offered = tuple(candidate.key for candidate in decision.offered) if decision else ()
     outcome = outcome_of(desk.snapshot.draft, offered)
-    return Override(outcome, desk.snapshot.who, why, desk.hands.clock())
+    return Override(outcome, desk.snapshot.who, why or desk.snapshot.why, desk.hands.clock())
 
 
 def offer_fork(desk: Desk) -> None:
@@ -231,7 +230,9 @@ def branch_off(
         leaving.options,
     )
     generation = desk.generation
-    desk.change(offer=None, draft=Draft(), working=f"forking at decision {leaving.decision}")
+    desk.change(
+        offer=None, draft=Draft(), why="", working=f"forking at decision {leaving.decision}"
+    )
     origin = (parent.branch_id, leaving.decision)
 
     def task() -> Message:
@@ -276,6 +277,7 @@ def forked(desk: Desk, generation: int, origin: tuple[str, int], run: Run) -> st
             footer=run.footer,
             parent=parent,
             fork_decision=decision,
+            trace=run.trace,
         )
     )
     settle(desk, branch_id)

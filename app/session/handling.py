@@ -89,7 +89,7 @@ def _drafted(change: Callable[[Draft], Draft]) -> Handler:
 
 
 def _clear(desk: Desk, _: c.Clear) -> None:
-    desk.change(draft=Draft(), offer=None)
+    desk.change(draft=Draft(), why="", offer=None)
 
 
 def _commit(desk: Desk, command: c.Commit) -> None:
@@ -165,6 +165,7 @@ _HANDLERS: dict[type[c.Command], Handler] = {
     c.TakeBack: _drafted(take_back),
     c.Clear: _clear,
     c.Commit: _commit,
+    c.Why: lambda desk, command: desk.change(why=command.text),
     c.Cancel: lambda desk, _: driving.cancel(desk),
     c.AskAgain: lambda desk, _: driving.ask(desk, desk.snapshot.branch.branch_id),
     c.Consent: _consent,

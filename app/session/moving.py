@@ -23,7 +23,16 @@ def step(desk: Desk) -> None:
         if desk.run is not None:
             driving.commit_proposal(desk, desk.snapshot.branch.branch_id)
         return
-    by_decision(desk, 1)
+    if not _over(desk):
+        by_decision(desk, 1)
+
+
+def _over(desk: Desk) -> bool:
+    """Whether the last place of a branch that cannot go on is in view; says so."""
+    over = not desk.at_frontier and desk.snapshot.stop + 1 == len(desk.snapshot.story.stops)
+    if over:
+        desk.say("This is the end: go back, or answer an earlier decision otherwise to fork")
+    return over
 
 
 def by_decision(desk: Desk, count: int) -> None:
@@ -60,6 +69,8 @@ def go(desk: Desk, branch_id: str, decision: int, number: int) -> None:
 
 def play(desk: Desk, until: str) -> None:
     """Go on by itself."""
+    if _over(desk):
+        return
     desk.change(playing=until)
     desk.due_s = desk.hands.clock()
 

@@ -47,6 +47,11 @@ class Run(Protocol):
         """Digest of the finished trace; "" before, or where nothing is recorded."""
         ...
 
+    @property
+    def trace(self) -> str:
+        """Path of the trace, which is there once it is finished; "" where nothing is recorded."""
+        ...
+
     def advance(self) -> Exchange:
         """Answer the pending request, asking the ranker where it is a question."""
         ...
@@ -109,6 +114,7 @@ class Opening:
         run: The live episode; None for a recording.
         trace_sha256: Digest of the recording.
         source: File name of the recording.
+        trace: Path of the recording.
         scene: Loads the scene for display; None where it is not to be had.
         surface: Loads the floor, for suspects; None where it is not to be had.
         no_scene: Why there is no scene, and what to do about it.
@@ -124,6 +130,7 @@ class Opening:
     run: Run | None = None
     trace_sha256: str = ""
     source: str = ""
+    trace: str = ""
     scene: Callable[[], Scene] | None = None
     surface: Callable[[], Surface] | None = None
     no_scene: str = ""

@@ -118,7 +118,7 @@ def answer_blind(desk: Desk) -> None:
     decision = desk.snapshot.decision
     offered = tuple(candidate.key for candidate in decision.offered) if decision else ()
     judge(desk, judging.ranking(outcome_of(desk.snapshot.draft, offered)))
-    desk.change(draft=Draft())
+    desk.change(draft=Draft(), why="")
     reveal(desk)
 
 

@@ -208,6 +208,7 @@ class Snapshot:
         proposals: Branch → the ranker's record for its pending decision.
         asking: The question that is out, if any.
         draft: The person's ranking so far.
+        why: What the person says about it.
         offer: A fork that waits for a yes.
         playing: "" or what it plays to ("play", "seeing", …, "end").
         view: How the map is looked at.
@@ -239,6 +240,7 @@ class Snapshot:
     proposals: dict[str, Ranked] = field(default_factory=dict[str, Ranked])
     asking: Asking | None = None
     draft: Draft = field(default_factory=Draft)
+    why: str = ""
     offer: ForkOffer | None = None
     playing: str = ""
     view: View = field(default_factory=View)

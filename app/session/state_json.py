@@ -8,7 +8,7 @@ from app.session.branches import Origin, ended_words
 from app.session.cards import decision_json, lookback_json
 from app.session.decisions import Decision
 from app.session.route_text import route_segments
-from app.session.snapshot import Judgement, Snapshot
+from app.session.snapshot import LAYERS_AT_FIRST, Judgement, Snapshot
 from app.session.timeline import Timelines
 
 Json = dict[str, Any]
@@ -56,6 +56,7 @@ def state_json(snapshot: Snapshot, timelines: Timelines | None = None) -> Json:
         "view": {
             "camera": snapshot.view.camera,
             "layers": sorted(snapshot.view.layers),
+            "layers_at_first": sorted(LAYERS_AT_FIRST),
             "hovered": snapshot.view.hovered,
             "blind": snapshot.view.blind,
         },

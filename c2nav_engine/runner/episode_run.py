@@ -65,6 +65,7 @@ class Parts:
         before_ask: Told about questions first, or None.
         scene: What is rendered, for viewers; None in playback.
         surface: The floor, for viewers; None in playback.
+        trace: Path of the trace that the recorder writes; "" without one.
     """
 
     header: Header
@@ -76,6 +77,7 @@ class Parts:
     before_ask: BeforeAsk | None = None
     scene: Scene | None = None
     surface: Surface | None = None
+    trace: str = ""
 
 
 class EpisodeRun:
@@ -89,6 +91,7 @@ class EpisodeRun:
         trace_sha256: Hash of the finished trace; "" before, or without a recorder.
         scene: What is rendered, for viewers.
         surface: The floor, for viewers.
+        trace: Path of the trace, which is there once it is finished; "" without a recorder.
     """
 
     def __init__(self, parts: Parts, *, clock: Callable[[], float] = time.monotonic) -> None:
@@ -98,6 +101,7 @@ class EpisodeRun:
         self.trace_sha256 = ""
         self.scene = parts.scene
         self.surface = parts.surface
+        self.trace = parts.trace
         self._parts = parts
         self._clock = clock
         self._proposal: Ranked | None = None

@@ -180,6 +180,7 @@ class Workbench:
                 before_ask=seat.before_ask,
                 scene=world.scene,
                 surface=world.surface,
+                trace=str(spec.trace or ""),
             )
         )
 

@@ -108,6 +108,9 @@ def test_a_run_in_progress_says_how_far_it_is(tmp_path: Path):
     make_run(run, ["full"], by_chance({"full": 0.3}), episodes=3)
     library = Library(run)
     client = TestClient(runs_application(RunPages(library)), base_url="http://127.0.0.1")
+    # While the folder was not looked at, that nothing has ended would be a guess.
+    assert "Reading the traces of this folder" in words(client.get("/").text)
+    library.refresh()
     assert "No episode has ended yet" in words(client.get("/").text)
     first = client.get("/run/stamp", params={"run": "."}).json()
     with sqlite3.connect(run / "ledger.sqlite") as db:

@@ -73,6 +73,37 @@ def test_an_override_is_recorded_with_the_original(live: Watched):
     assert made.ranked.outcome == Ordering.of("front", "left")
 
 
+def test_a_fork_carries_who_and_why(recorded: Watched):
+    recorded.do(c.Name(who="ada"))
+    recorded.do(c.Go(decision=3))
+    recorded.do(c.Press(key="left"))
+    recorded.do(c.Why(text="the door is there"))
+    recorded.do(c.Commit())
+    recorded.do(c.Commit())
+    snapshot = recorded.until(lambda s: s.branch.origin is Origin.FORK and s.proposal is not None)
+    override = snapshot.story.decisions[3].override
+    assert override is not None
+    assert (override.who, override.why) == ("ada", "the door is there")
+    assert snapshot.why == ""
+
+
+def test_what_was_said_of_one_ranking_is_not_kept_for_another(recorded: Watched):
+    recorded.do(c.Go(decision=3))
+    recorded.do(c.Press(key="left"))
+    recorded.do(c.Why(text="the door is there"))
+    recorded.until(lambda s: bool(s.why))
+    recorded.do(c.Go(decision=4))
+    assert recorded.until(lambda s: s.here.decision == 4).why == ""
+
+
+def test_at_the_end_a_step_says_that_it_is_one(recorded: Watched):
+    recorded.do(c.Go())
+    recorded.do(c.Step())
+    snapshot = recorded.until(lambda s: s.notice.serial > 0)
+    assert "This is the end" in snapshot.notice.text
+    assert snapshot.stop + 1 == len(snapshot.story.stops)
+
+
 def test_a_vetoed_view_cannot_be_ranked(live: Watched):
     live.until(proposed(0))
     live.do(c.Arrange(tiers=(("right",), ("left",))))

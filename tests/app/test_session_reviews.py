@@ -225,6 +225,7 @@ HARMLESS = {
     "stop",
     "asking",
     "draft",
+    "why",
     "offer",
     "playing",
     "tags",

@@ -86,6 +86,7 @@ class PlayRun:
         self.exchanges: list[Exchange] = []
         self.footer: Footer | None = None
         self.trace_sha256 = ""
+        self.trace = f"logs/inspected/1.full.at{self.header.fork_decision}.mcap"
         self.pending: Request | None = next(self.script)
         self._pose = EPISODE.start
         self._steps = 0

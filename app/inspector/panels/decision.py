@@ -34,6 +34,13 @@ STRIP = "<rank-strip></rank-strip>"
 def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:
     """Build the panel."""
     gui.add_html(STRIP)
+    why = gui.add_text("why", "", hint="kept with your answer", visible=False)
+
+    @why.on_update
+    def _(event: viser.GuiEvent[viser.GuiTextHandle]) -> None:
+        if event.client is not None:
+            dispatch(c.Why(text=event.target.value))
+
     below = Html(gui)
     with gui.add_folder("Rank without a mouse", expand_by_default=False):
         presses = {letter: c.Press(position=index) for index, letter in enumerate("ABCDEF")}
@@ -49,7 +56,15 @@ def build(gui: viser.GuiApi, dispatch: Dispatch) -> Update:
                 "commit": c.Commit(),
             },
         )
-    return lambda snapshot: below.show(_below(snapshot))
+
+    def update(snapshot: Snapshot) -> None:
+        answering = not snapshot.draft.empty and not snapshot.covered
+        if why.visible != answering:
+            why.visible = answering
+            why.value = snapshot.why
+        below.show(_below(snapshot))
+
+    return update
 
 
 def _below(snapshot: Snapshot) -> str:

@@ -21,7 +21,7 @@ def build(gui: viser.GuiApi, _dispatch: Dispatch) -> Update:
 
 def _block(snapshot: Snapshot) -> str:
     branch = snapshot.branch
-    source = branch.source or "TRACE.mcap"
+    ended = branch.footer is not None
     return m.padded(
         m.heading("This view"),
         Markup('<div class="c2-buttons">{}</div>').format(
@@ -38,19 +38,23 @@ def _block(snapshot: Snapshot) -> str:
         m.heading("This branch"),
         m.facts(
             [
-                ("trace", branch.source or "written while it runs"),
+                ("trace", branch.trace + ("" if ended else ", once it has ended")),
                 ("sha256", branch.trace_sha256[:16]),
                 ("forked at", str(branch.fork_decision) if branch.fork_decision >= 0 else ""),
             ]
         ),
         m.heading("As files"),
-        *[_command(words, line) for words, line in commands_of(snapshot, source)],
+        *(
+            [_command(words, line) for words, line in commands_of(snapshot)]
+            if ended
+            else [m.note("Their commands stand here once the episode has ended")]
+        ),
     )
 
 
-def commands_of(snapshot: Snapshot, source: str) -> list[tuple[str, str]]:
+def commands_of(snapshot: Snapshot) -> list[tuple[str, str]]:
     """What each command makes, and the command."""
-    trace = shlex.quote(source)
+    trace = shlex.quote(snapshot.branch.trace)
     number = max(snapshot.here.decision, 0)
     lines = [
         ("table of decisions", f"c2nav trace export {trace} --to parquet --out decisions.parquet"),

@@ -7,6 +7,7 @@ from markupsafe import Markup
 
 from app.inspector import markup as m
 from app.inspector.panels.protocol import Dispatch, Html, Update
+from app.session.decisions import LANES
 from app.session.snapshot import Snapshot
 from c2nav_engine.navigator.requests import LadderState
 
@@ -31,8 +32,14 @@ def ladders_in_view(snapshot: Snapshot) -> list[LadderState]:
 def _block(snapshot: Snapshot) -> str:
     ladders = ladders_in_view(snapshot)
     if not ladders:
+        decision = snapshot.decision
+        asked = decision is not None and decision.lane == LANES.index("Arriving")
         return m.padded(
-            m.note("Arriving is asked in the last leg, once enough of the route is travelled")
+            m.note(
+                "The first reading stands here once this question is answered"
+                if asked
+                else "Arriving is asked in the last leg, once enough of the route is travelled"
+            )
         )
     last = ladders[-1]
     return m.padded(
