@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 from rich.console import Console
 
+from app.commands.heaps import share_heaps
 from app.commands.importing import uncollected
 from app.commands.options import (
     ConnectivityOpt,
@@ -82,6 +83,7 @@ def inspect(
         message = "expected --headings and --ground-truth beside a source: recordings keep theirs"
         raise UsageError(message)
     graphs = connectivity_folder(connectivity, scenes)
+    share_heaps()
     listener = listen(host, port)
     if root is not None and not traces:
         traces = _first_traces(root, scenes, listener, host=host)

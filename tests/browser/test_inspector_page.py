@@ -111,6 +111,13 @@ def test_the_address_restores_the_view(browser: Browser):
             seen.until("s.place.decision === 7")
         with visit(browser, f"{url}?step=11&camera=top") as seen:
             seen.until("s.place.step === 11 && s.view.camera === 'top'")
+            seen.page.evaluate("c2nav.send('layer', {name: 'goal', on: true})")
+            seen.page.wait_for_url("**layers=**")
+            kept = seen.page.url
+            seen.page.evaluate("c2nav.send('layer', {name: 'goal', on: false})")
+            seen.until("!s.view.layers.includes('goal')")
+        with visit(browser, kept) as seen:
+            seen.until("s.view.layers.includes('goal') && s.view.layers.includes('fan')")
 
 
 def test_timeline_marks_are_large_enough_to_hit_and_go_there(recorded: Live):

@@ -177,7 +177,7 @@ def _known(decision: Decision) -> Markup:
 def chips_of(decision: Decision, total: int) -> list[str]:
     """Short facts about a decision."""
     return [
-        f"decision {decision.number} of {total}",
+        f"decision {decision.number} of 0–{total - 1}",
         f"{LANES[decision.lane]} {SIGNS[decision.lane]}",
         decision.facts.contested,
     ]
