@@ -7,6 +7,7 @@ error; 130 interrupted, with everything finished kept.
 
 from __future__ import annotations
 
+import errno
 import importlib
 import os
 import select
@@ -73,6 +74,23 @@ def _run(arguments: Sequence[str] | None) -> int:
             raise
         sys.stderr.write(f"c2nav: {error}\n")
         return 2 if isinstance(error, InputError | MissingExtra | RankerStopped) else 1
+    except OSError as error:
+        where = _place_of(error)
+        if debug or not where:
+            raise
+        sys.stderr.write(
+            f"c2nav: expected files that can be read and written, came {error.strerror}: {where}; "
+            "mend the place or name another (--debug says where in the program)\n"
+        )
+        return 2
+
+
+def _place_of(error: OSError) -> str:
+    """The file that the user's disk refused; "" for what no file name or disk explains."""
+    if error.filename is not None:
+        return str(error.filename2 or error.filename)
+    # A write that finds the disk full does not know its file any more.
+    return "the disk" if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
 
 
 def _output_closed() -> bool:

@@ -11,7 +11,7 @@ import tyro
 from rich.console import Console
 
 from app.commands.options import JsonOpt, ScenesOpt
-from app.commands.output import print_json
+from app.commands.output import check_folder, print_json
 from app.commands.surroundings import surroundings_of
 from app.exports.case_sets.packing import pack_set
 from app.exports.case_sets.unpacking import unpack_set
@@ -56,6 +56,7 @@ def export(
     json: JsonOpt = False,
 ) -> int:
     """Write a set as a folder: traces, table, page, figures, appendix, manifest of hashes."""
+    check_folder(out)
     library = Library(runs, scenes)
     try:
         _tell_unreadable(library)
@@ -77,6 +78,7 @@ def import_set(
     json: JsonOpt = False,
 ) -> int:
     """Check an exported set by its hashes and add it to a folder of runs."""
+    check_folder(into)
     taken = unpack_set(packed, into, scenes=scenes)
     words = f"{taken.folder}: {taken.cases} cases; open them with `c2nav inspect {into}`"
     _say(words, {"folder": str(taken.folder), "cases": taken.cases}, json=json)

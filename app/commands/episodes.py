@@ -22,7 +22,7 @@ from app.commands.options import (
     connectivity_folder,
     ids,
 )
-from app.commands.output import print_json
+from app.commands.output import check_file, print_json
 from app.commands.scenes import opened_scene
 from c2nav_engine.contract.route import parse_english
 from c2nav_engine.episodes.episode import Episode
@@ -123,6 +123,7 @@ def make(
     if not out.name.endswith((".json", ".json.gz")):
         message = f"expected a file that ends in .json or .json.gz, came --out {out}"
         raise UsageError(message)
+    check_file(out)
     opened = opened_scene(scene, scenes, profile_named(profile))
     world = opened.world
     made = make_episodes(

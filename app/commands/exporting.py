@@ -14,7 +14,7 @@ from rich.console import Console
 
 from app.commands.merging import reviews_for
 from app.commands.options import JsonOpt, ScenesOpt
-from app.commands.output import print_json
+from app.commands.output import check_file, print_json
 from app.commands.surroundings import Surroundings, surroundings_of
 from app.exports.family import Member, family_of
 from app.exports.html import HtmlOptions, Setting, export_html, licensed
@@ -125,7 +125,10 @@ def export(
     wish = Wish(with_, scenes, no_scene, with_licensed_images, table)
     _check(traces, to, wish)
     made: list[Made] = []
-    for group, target in _targets(traces, to, out):
+    targets = _targets(traces, to, out)
+    for _, target in targets:
+        check_file(target, *traces, *([with_] if with_ else []))
+    for group, target in targets:
         target.parent.mkdir(parents=True, exist_ok=True)
         notes = tuple(_MAKERS[to](group, target, wish))
         made.append(Made(target, target.stat().st_size, group, notes))

@@ -11,7 +11,7 @@ import tyro
 from rich.console import Console
 
 from app.commands.options import JsonOpt, ScenesOpt, whole_numbers
-from app.commands.output import print_json
+from app.commands.output import check_file, print_json
 from app.commands.surroundings import surroundings_of
 from app.figures.figure import FigureSpec, Kind, inches
 from app.figures.plan import Plan
@@ -59,6 +59,7 @@ def figure(
     if out is None or not traces:
         message = "expected TRACE and --out FIG.pdf, or --recipe FIG.json"
         raise UsageError(message)
+    check_file(out, *traces)
     spec = FigureSpec(kind, whole_numbers(decisions, "decisions"), inches(width))
     runs = _runs(traces)
     plan = Plan()
@@ -77,6 +78,7 @@ def _again(path: Path, out: Path | None, *, json: bool) -> int:
     runs = _runs(traces_of(made, path))
     check_runs(made, runs)
     target = out or path.parent / made.figure
+    check_file(target, path)
     written = write_figure(made.spec, runs, target, plan=made.plan)
     comparable = target.suffix == Path(made.figure).suffix
     same = written.sha256 == made.figure_sha256 if comparable else None

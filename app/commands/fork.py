@@ -10,7 +10,7 @@ import tyro
 from rich.console import Console
 
 from app.commands.options import JsonOpt, RankerOptions, ScenesOpt, key_values
-from app.commands.output import print_json
+from app.commands.output import check_file, print_json
 from c2nav_engine.contract.answers import parse
 from c2nav_engine.contract.outcome import Ordering
 from c2nav_engine.contract.render import render
@@ -40,6 +40,7 @@ def fork(
     json: JsonOpt = False,
 ) -> int:
     """Run a trace again up to a decision, answer it otherwise, and go on (needs the scene)."""
+    check_file(out, trace)
     parent = read_trace(trace)
     decision = next((e for e in parent.exchanges if e.decision == at), None)
     override = Override(_ordering(decision, ranking, at), "command line", when_s=time.time())

@@ -9,7 +9,7 @@ from typing import Annotated
 import tyro
 
 from app.commands.options import JsonOpt
-from app.commands.output import print_json
+from app.commands.output import check_folder, print_json
 from c2nav_engine.contract.outcome import Answered
 from c2nav_engine.contract.prompt import Prompt, Query
 from c2nav_engine.contract.render import render, text_of
@@ -29,6 +29,8 @@ def question(
     json: JsonOpt = False,
 ) -> int:
     """Print every query of a decision: text, pictures by hash, labels, raw answer."""
+    if pictures is not None:
+        check_folder(pictures)
     with open_trace(trace) as opened:
         decision = opened.decision(at)
     if not isinstance(decision.request, Ask):

@@ -14,7 +14,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from app.commands.options import JsonOpt, RankerOptions, key_values
-from app.commands.output import print_json
+from app.commands.output import check_file, print_json
 from app.commands.what import trace_files
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.asking import asking_from
@@ -45,6 +45,7 @@ def reeval(
     if not paths:
         message = "expected traces or run folders, came none that holds a trace"
         raise UsageError(message)
+    check_file(out, *paths)
     options = key_values(ranker_opt)
     if "cache" in options:
         message = "expected no answer cache, came the option cache; questions are asked anew here"

@@ -9,7 +9,7 @@ import tyro
 from rich.console import Console
 
 from app.commands.options import JsonOpt
-from app.commands.output import print_json
+from app.commands.output import check_folder, print_json
 
 
 def report(
@@ -29,6 +29,7 @@ def report(
     if not runs:
         message = "expected one or more run folders, came none; name what `c2nav run` wrote"
         raise UsageError(message)
+    check_folder(out)
     study = human_study(runs)
     written = write_report(runs, out, annexes=(study,) if study else ())
     page = out / "report.html"

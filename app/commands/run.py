@@ -25,7 +25,7 @@ from app.commands.options import (
     whole_numbers,
     words,
 )
-from app.commands.output import print_json
+from app.commands.output import check_folder, print_json
 from app.commands.run_words import error_lines, progress_bar, tell_rows
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.batch import BatchResult, run_batch
@@ -73,6 +73,8 @@ def run(
     json: JsonOpt = False,
 ) -> int:
     """Run episodes and write traces, `episodes.csv` and `summary.json`."""
+    if not dry_run:
+        check_folder(out)
     setting = Setting(
         source=source if source == "builtin" else str(Path(source).resolve()),
         scenes=str(scenes.resolve()) if scenes else "",

@@ -10,7 +10,7 @@ import tyro
 from rich.console import Console
 
 from app.commands.options import JsonOpt, words
-from app.commands.output import print_json
+from app.commands.output import check_file, check_folder, print_json
 from app.reviews.study import add_person as add_to
 from app.reviews.study import make_study, read_study
 
@@ -119,6 +119,7 @@ def pack(
     """Write one page a person that judges from a file, without any network."""
     from app.commands.packing import pack_study
 
+    check_folder(out)
     written = pack_study(read_study(run, name), out=out, only=person)
     if json:
         print_json({"packed": {each: str(path) for each, path in written.items()}})
@@ -164,10 +165,12 @@ def export(
     json: JsonOpt = False,
 ) -> int:
     """Write everything that people said about a run as lines of JSON."""
-    from app.reviews.store import export_lines, store_of
+    from app.reviews.store import FILE, export_lines, store_of
 
+    check_file(out, run / FILE)
     with store_of(run) as store:
         lines = export_lines(store, names=names)
+    out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
     if json:
         print_json({"out": str(out), "events": len(lines)})

@@ -11,7 +11,7 @@ from rich.console import Console
 
 from app.commands.exporting import export
 from app.commands.options import JsonOpt
-from app.commands.output import print_json
+from app.commands.output import check_file, print_json
 from c2nav_engine.runner.recorded import open_trace
 from c2nav_engine.traces.check import check as faults_of
 from c2nav_engine.traces.recover import recover as salvage
@@ -75,6 +75,7 @@ def recover(
     json: JsonOpt = False,
 ) -> int:
     """Save what is intact of an unfinished or damaged trace."""
+    check_file(out, trace)
     saved = salvage(trace, out)
     if json:
         print_json({"trace": str(out), "saved": str(saved)})

@@ -9,7 +9,7 @@ import tyro
 from rich.console import Console
 
 from app.commands.options import JsonOpt, RankerOptions, ScenesOpt, key_values
-from app.commands.output import print_json
+from app.commands.output import check_file, print_json
 from app.commands.what import trace_files
 from app.session.wording import plural
 from c2nav_engine.errors import UsageError
@@ -55,11 +55,13 @@ def turning(
 ) -> int:
     """Fork the worst decisions of failed episodes into their other answers; resumes its table."""
     _check(suspects, repeats)
+    paths = trace_files(what)
+    check_file(out, *paths)
     rows = read_table(out)
     console = Console(stderr=True, highlight=False)
     options = key_values(ranker_opt)
     verdicts: dict[str, str] = {}
-    for path in trace_files(what):
+    for path in paths:
         trace = read_trace(path)
         if trace.footer.metrics.get("success") == 1:
             continue

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from c2nav_engine.errors import TraceError, UsageError
+from c2nav_engine.errors import TraceError
+from c2nav_engine.traces.apart import keep_apart
 from c2nav_engine.traces.check import missing_pictures
 from c2nav_engine.traces.reader import TraceFile
 from c2nav_engine.traces.records import MAGIC
@@ -58,9 +59,7 @@ def recover(source: Path, out: Path) -> Recovered:
         UsageError: `out` is `source`.
         TraceError: Nothing of a trace is there.
     """
-    if source.resolve() == out.resolve():
-        message = f"expected another file for the recovered trace, came {out} for both"
-        raise UsageError(message)
+    keep_apart(out, source)
     if not source.is_file():
         message = f"expected a trace file, found none at {source}"
         raise TraceError(message)

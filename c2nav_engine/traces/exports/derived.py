@@ -8,6 +8,7 @@ from pathlib import Path
 
 from c2nav_engine.contract.outcome import Answered
 from c2nav_engine.errors import UsageError
+from c2nav_engine.traces.apart import keep_apart
 from c2nav_engine.traces.contract_messages import outcome_message, outcome_of
 from c2nav_engine.traces.pb import common_pb2, review_pb2
 from c2nav_engine.traces.reader import TraceFile
@@ -100,9 +101,7 @@ def _derive(
     without: Sequence[str] = (),
     extra: Sequence[Outgoing] = (),
 ) -> str:
-    if out.resolve() == trace.path.resolve():
-        message = f"expected another file for the new trace, came {out} for both"
-        raise UsageError(message)
+    keep_apart(out, trace.path)
     kept = [stored for stored in trace.messages() if stored.topic not in without]
     added = [stored_message(outgoing, number) for number, outgoing in enumerate(extra)]
     return settle(
