@@ -20,6 +20,7 @@ from c2nav_engine.traces.attachments import (
 from c2nav_engine.traces.topics import SCHEMA_VERSION
 
 _HEADER = TypeAdapter(Header)
+_METRICS = TypeAdapter(dict[str, int | float | str | None])
 
 
 def header_files(header: Header) -> dict[str, bytes]:
@@ -89,10 +90,22 @@ def footer_facts(footer: Footer) -> dict[str, str]:
 
 
 def footer_of(facts: Mapping[str, str]) -> Footer:
-    """The footer of a trace's facts; of a recovered one, `interrupted` without metrics."""
-    outcome = EpisodeOutcome(facts.get("outcome", "interrupted"))
-    metrics = json.loads(facts.get("metrics", "{}"))
-    plain = {name: _number(value) for name, value in metrics.items()}
+    """The footer of a trace's facts; of a recovered one, `interrupted` without metrics.
+
+    Raises:
+        TraceError: A fact makes no sense, as after damage.
+    """
+    try:
+        outcome = EpisodeOutcome(facts.get("outcome", "interrupted"))
+        metrics = _METRICS.validate_json(facts.get("metrics", "{}"))
+        plain = {name: _number(value) for name, value in metrics.items()}
+    except ValueError as error:
+        came = " ".join(str(error).split())
+        message = (
+            f"damaged trace: expected an outcome and metrics in its closing record, came {came}; "
+            "`c2nav trace recover` saves what is intact"
+        )
+        raise TraceError(message) from error
     return Footer(outcome, plain, facts.get("error", ""))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
@@ -10,7 +9,6 @@ from pathlib import Path
 
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 from mcap.opcode import Opcode
-from mcap.records import DataEnd
 
 from c2nav_engine.errors import TraceError
 from c2nav_engine.traces.moments import parsed, picture_table
@@ -20,8 +18,8 @@ from c2nav_engine.traces.records import (
     Record,
     attachment_of,
     chunk_records,
+    data_sums,
     footer_of,
-    parse,
     walk,
 )
 from c2nav_engine.traces.topics import (
@@ -91,8 +89,7 @@ def _section_faults(data: bytes) -> Iterator[Fault]:
     if record is None or record.opcode != Opcode.DATA_END:
         yield Fault(f"byte {end}", "the end of the data section", "something else")
         return
-    written = parse(DataEnd.read, record).data_section_crc
-    found = zlib.crc32(data[:end])
+    written, found = data_sums(data, record)
     if written != found:
         yield Fault("data section", f"CRC {written:08x}", f"{found:08x}")
 

@@ -16,7 +16,7 @@ from typing import TypeVar
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Attachment, Channel, Chunk, Footer, Message, Schema
+from mcap.records import Attachment, Channel, Chunk, DataEnd, Footer, Message, Schema
 from mcap.stream_reader import breakup_chunk
 from zstandard import ZstdError
 
@@ -121,6 +121,12 @@ def footer_of(tail: bytes) -> Footer | None:
     if opcode != Opcode.FOOTER or length != FOOTER_BYTES - PREFIX.size:
         return None
     return parse(Footer.read, Record(opcode, 0, payload[PREFIX.size :]))
+
+
+def data_sums(data: bytes, record: Record) -> tuple[int, int]:
+    """The CRC of everything before a `DataEnd` record: as it was written, and as it is."""
+    written = parse(DataEnd.read, record).data_section_crc
+    return written, zlib.crc32(memoryview(data)[: record.offset])
 
 
 def summary_crc_holds(footer: Footer, summary: bytes) -> bool:

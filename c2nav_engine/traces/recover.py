@@ -14,6 +14,12 @@ from c2nav_engine.traces.salvage import Salvaged, salvage
 from c2nav_engine.traces.settle import settle
 from c2nav_engine.traces.topics import EXCHANGE_TOPICS, METADATA, STARTED
 
+UNVERIFIED = "unverified_"
+"""What the names of facts begin with that may be damaged."""
+
+_CLOSING = ("outcome", "error", "metrics")
+"""Facts that only the closing record holds, and only the checksum over the whole file covers."""
+
 
 @dataclass(frozen=True, slots=True)
 class Recovered:
@@ -27,6 +33,8 @@ class Recovered:
         damaged: Records left out because their CRC did not hold.
         lost_bytes: Bytes after the last whole record.
         lost_pictures: Pictures that a kept exchange names and that are not there.
+        unverified: Closing facts (outcome, metrics) that no checksum vouches for any more; the new
+            trace has them as `unverified_…`.
         complete: Whether nothing was missing.
     """
 
@@ -37,6 +45,7 @@ class Recovered:
     damaged: int
     lost_bytes: int
     lost_pictures: int
+    unverified: tuple[str, ...]
     complete: bool
 
     def __str__(self) -> str:
@@ -46,14 +55,25 @@ class Recovered:
             return f"{kept}, nothing missing"
         return (
             f"{kept}; left out: {self.damaged} damaged records, {self.lost_bytes} bytes at the "
-            f"end; {self.lost_pictures} pictures are missing"
+            f"end; {self.lost_pictures} pictures are missing{self._doubt()}"
+        )
+
+    def _doubt(self) -> str:
+        if not self.unverified:
+            return ""
+        names = ", ".join(self.unverified)
+        return (
+            f"; the checksum over the whole file does not hold, so that {names} may be wrong: "
+            f"they are kept as {UNVERIFIED}…, not as results"
         )
 
 
 def recover(source: Path, out: Path) -> Recovered:
     """Copy everything intact in `source` into a new, readable trace.
 
-    The new trace says `complete: no` and `recovered: yes`, unless nothing was missing.
+    The new trace says `complete: no` and `recovered: yes`, unless nothing was missing and the
+    checksum over the whole holds. Chunks and attachments have checksums of their own; where the one
+    over the whole does not hold, outcome and metrics are no longer taken for results.
 
     Raises:
         UsageError: `out` is `source`.
@@ -81,6 +101,7 @@ def recover(source: Path, out: Path) -> Recovered:
         damaged=found.damaged,
         lost_bytes=0 if found.finished else len(data) - found.end,
         lost_pictures=lost_pictures,
+        unverified=tuple(name for name in _CLOSING if f"{UNVERIFIED}{name}" in facts),
         complete=facts["complete"] == "yes",
     )
 
@@ -91,7 +112,13 @@ def _facts(found: Salvaged, source: Path) -> dict[str, str]:
         message = f"nothing to recover: {source} was cut off before it said which run it is"
         raise TraceError(message)
     # The last metadata record is written after the last exchange: with it, everything is there.
-    if METADATA not in found.metadata or found.damaged:
+    whole = METADATA in found.metadata and not found.damaged
+    if found.sum_holds is False:
+        whole = False
+        for name in _CLOSING:
+            if facts.get(name):
+                facts[f"{UNVERIFIED}{name}"] = facts.pop(name)
+    if not whole:
         facts |= {"complete": "no", "recovered": "yes"}
         facts.setdefault("outcome", "interrupted")
     return facts

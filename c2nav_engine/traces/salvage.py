@@ -18,6 +18,7 @@ from c2nav_engine.traces.records import (
     Stored,
     attachment_of,
     chunk_records,
+    data_sums,
     parse,
     walk,
 )
@@ -35,6 +36,7 @@ class Salvaged:
         damaged: Records left out because their CRC did not hold or they made no sense.
         end: First byte after the last whole record.
         finished: Whether the data section had been closed.
+        sum_holds: Whether the closing CRC, the only one over metadata, holds; None without one.
     """
 
     messages: list[Stored] = field(default_factory=list[Stored])
@@ -43,6 +45,7 @@ class Salvaged:
     damaged: int = 0
     end: int = len(MAGIC)
     finished: bool = False
+    sum_holds: bool | None = None
 
 
 def salvage(data: bytes) -> Salvaged:
@@ -54,6 +57,9 @@ def salvage(data: bytes) -> Salvaged:
         reading.found.end = record.end
         try:
             reading.take(record)
+            if record.opcode == Opcode.DATA_END:
+                written, found = data_sums(data, record)
+                reading.found.sum_holds = written == found
         except TraceError:
             reading.found.damaged += 1
     return reading.found

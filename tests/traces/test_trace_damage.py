@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from c2nav_engine.errors import TraceError, UnfinishedTrace, UsageError
-from c2nav_engine.runner.record import EpisodeOutcome
+from c2nav_engine.runner.record import EpisodeOutcome, Footer
 from c2nav_engine.runner.recorded import Trace, open_trace, read_trace
 from c2nav_engine.runner.recording import TraceWriter
 from c2nav_engine.traces import check, recover
@@ -163,7 +163,65 @@ def test_a_damaged_chunk_costs_only_itself(tmp_path: Path) -> None:
     assert found.damaged == 1
     assert 0 < whole.messages - found.messages < 20
     assert not found.complete and whole.complete
+    # What hit the chunk may have hit the closing record too, which nothing else vouches for.
+    assert "metrics" in found.unverified and not whole.unverified
     assert whole.lost_pictures == 0
+
+
+def closing_damage(whole: Path, old: bytes, new: bytes) -> Path:
+    """A copy in which the closing record, which has no checksum of its own, reads otherwise."""
+    data = whole.read_bytes()
+    place = data.rfind(old)
+    assert place > 0 and len(old) == len(new)
+    damaged = whole.with_name("damaged.mcap")
+    damaged.write_bytes(data[:place] + new + data[place + len(old) :])
+    return damaged
+
+
+DAMAGE = {
+    "another result": (b'"success": 1', b'"success": 0'),
+    "no JSON": (b'"success": 1', b'"success"x 1'),
+    "no number": (b'"success": 1', b'"success": Q'),
+    "no outcome": (b"stopped", b"stopqed"),
+    "another name": (b"metrics", b"metricq"),
+}
+
+
+@pytest.fixture
+def reached(tmp_path: Path) -> Path:
+    episode = fake_episode(2, side_px=16)
+    footer = Footer(EpisodeOutcome.STOPPED, {**episode.footer.metrics, "success": 1})
+    with TraceWriter(tmp_path / "reached.mcap", episode.header) as writer:
+        for exchange in episode.exchanges:
+            writer.write(exchange)
+        writer.finish(footer)
+    return tmp_path / "reached.mcap"
+
+
+@pytest.mark.parametrize("name", DAMAGE)
+def test_recovery_vouches_for_no_closing_record_that_may_be_damaged(reached: Path, name: str):
+    damaged, out = closing_damage(reached, *DAMAGE[name]), reached.with_name("out.mcap")
+    with pytest.raises(TraceError, match="damaged trace"):
+        read_trace(damaged)
+    found = recover(damaged, out)
+    assert not found.complete and "outcome" in found.unverified
+    assert "nothing missing" not in str(found) and "may be wrong" in str(found)
+    recovered = read_trace(out)
+    assert not recovered.complete
+    assert recovered.footer == Footer(EpisodeOutcome.INTERRUPTED, {}, "")
+    assert len(recovered.exchanges) == len(read_trace(reached).exchanges)
+    with open_trace(out) as opened:
+        kept = opened.file.facts["unverified_outcome"]
+    assert kept == ("stopqed" if name == "no outcome" else "stopped")
+
+
+@pytest.mark.parametrize("name", ["no JSON", "no number", "no outcome"])
+def test_a_footer_that_makes_no_sense_is_an_error_of_ours(reached: Path, name: str):
+    with (
+        open_trace(closing_damage(reached, *DAMAGE[name])) as opened,
+        pytest.raises(TraceError, match="in its closing record"),
+    ):
+        _ = opened.footer
 
 
 def kill_and_recover(folder: Path, *, seed: int) -> None:
