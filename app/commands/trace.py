@@ -12,6 +12,7 @@ from rich.console import Console
 from app.commands.exporting import export
 from app.commands.options import JsonOpt
 from app.commands.output import check_file, print_json
+from c2nav_engine.errors import UsageError
 from c2nav_engine.runner.recorded import open_trace
 from c2nav_engine.traces.check import check as faults_of
 from c2nav_engine.traces.recover import recover as salvage
@@ -24,6 +25,7 @@ TracesArg = Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(meta
 
 def info(traces: TracesArg, json: JsonOpt = False) -> int:
     """What traces hold: episode, variant, ranker, outcome, topics, size."""
+    _some(traces)
     found: list[dict[str, object]] = []
     for path in traces:
         with open_trace(path) as trace:
@@ -50,6 +52,7 @@ def info(traces: TracesArg, json: JsonOpt = False) -> int:
 
 def check(traces: TracesArg, json: JsonOpt = False) -> int:
     """Verify checksums, numbering, pictures and schema of traces."""
+    _some(traces)
     found = {str(path): [str(fault) for fault in faults_of(path)] for path in traces}
     if json:
         print_json({"faults": found})
@@ -61,6 +64,12 @@ def check(traces: TracesArg, json: JsonOpt = False) -> int:
             for line in first_of(faults):
                 console.print(f"  {line}", markup=False, soft_wrap=True)
     return 1 if any(found.values()) else 0
+
+
+def _some(traces: Sequence[Path]) -> None:
+    if not traces:
+        message = "expected one or more traces, came none; name the files"
+        raise UsageError(message)
 
 
 def first_of(faults: Sequence[str]) -> list[str]:

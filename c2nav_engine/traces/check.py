@@ -16,6 +16,7 @@ from c2nav_engine.traces.pb import control_pb2, decision_pb2, evaluation_pb2, ro
 from c2nav_engine.traces.reader import TraceFile
 from c2nav_engine.traces.records import (
     Record,
+    Stored,
     attachment_of,
     chunk_records,
     data_sums,
@@ -25,7 +26,6 @@ from c2nav_engine.traces.records import (
 from c2nav_engine.traces.topics import (
     EXCHANGE_TOPICS,
     IMAGE_TOPICS,
-    TOPICS,
     log_time_ns,
     step_and_exchange,
 )
@@ -61,10 +61,15 @@ class Fault:
 def check(path: Path) -> list[Fault]:
     """Everything wrong with a trace; an empty list when nothing is.
 
+    Raises `TraceError` where there is no file at all: that is bad input, not a fault of a trace.
+
     Reads every byte: CRCs of chunks, attachments, data section and index; then the exchanges'
     numbering and every picture's digest. A redacted trace may lack pictures, a recovered one its
     end; both say so in their metadata.
     """
+    if not path.is_file():
+        message = f"expected a trace file, found none at {path}"
+        raise TraceError(message)
     try:
         with TraceFile(path) as trace:
             data = path.read_bytes()
@@ -113,7 +118,7 @@ def _content_faults(trace: TraceFile) -> Iterator[Fault]:
     exchanges: list[int] = []
     decisions: list[int] = []
     for stored in trace.messages(*EXCHANGE_TOPICS, "/eval"):
-        message = _facts_message(stored.topic, stored.data)
+        message = _facts_message(stored)
         if stored.log_time_ns != log_time_ns(message.step, message.exchange):
             where = f"{stored.topic} {stored.sequence}"
             yield Fault(where, "the log time of its step", f"{stored.log_time_ns} ns")
@@ -128,8 +133,8 @@ def _content_faults(trace: TraceFile) -> Iterator[Fault]:
     yield from missing_pictures(trace)
 
 
-def _facts_message(topic: str, data: bytes) -> Facts:
-    message = TOPICS[topic].message.FromString(data)
+def _facts_message(stored: Stored) -> Facts:
+    message = parsed(stored)
     assert isinstance(message, Facts)
     return message
 
@@ -146,7 +151,7 @@ def missing_pictures(trace: TraceFile) -> Iterator[Fault]:
     if trace.facts.get("redacted") == "yes":
         return
     held = {
-        (stored.topic, stored.log_time_ns, sha256(_image(stored.data)).hexdigest())
+        (stored.topic, stored.log_time_ns, sha256(_image(stored)).hexdigest())
         for stored in trace.messages(*IMAGE_TOPICS)
     }
     named = (
@@ -165,5 +170,7 @@ def missing_pictures(trace: TraceFile) -> Iterator[Fault]:
             yield Fault(where, f"picture {digest[:12]}", "none")
 
 
-def _image(data: bytes) -> bytes:
-    return CompressedImage.FromString(data).data
+def _image(stored: Stored) -> bytes:
+    image = parsed(stored)
+    assert isinstance(image, CompressedImage)
+    return image.data

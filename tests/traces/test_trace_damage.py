@@ -6,6 +6,7 @@ import signal
 from pathlib import Path
 
 import pytest
+from mcap.writer import Writer
 
 from c2nav_engine.errors import TraceError, UnfinishedTrace, UsageError
 from c2nav_engine.runner.record import EpisodeOutcome, Footer
@@ -79,6 +80,24 @@ def test_what_is_no_trace_is_refused_in_words(tmp_path: Path, content: bytes) ->
     with pytest.raises(TraceError, match="nothing to recover"):
         recover(path, tmp_path / "y.mcap")
     assert [file.name for file in tmp_path.iterdir()] == ["x.mcap"]
+
+
+@pytest.mark.parametrize("topic", ["/decision", "/eval", "/view/front"])
+def test_another_program_behind_our_name_is_a_fault(tmp_path: Path, topic: str) -> None:
+    path = tmp_path / "foreign.mcap"
+    writer = Writer(str(path))
+    writer.start()
+    schema = writer.register_schema("a", "jsonschema", b"{}")
+    channel = writer.register_channel(topic, "json", schema)
+    writer.add_message(channel, 0, b"{}", 0)
+    writer.add_metadata("c2nav", {"schema_version": "1"})
+    writer.finish()
+    assert any("is no message" in str(fault) for fault in check(path))
+
+
+def test_a_missing_file_is_no_fault_of_a_trace(tmp_path: Path) -> None:
+    with pytest.raises(TraceError, match=r"none at .*gone\.mcap"):
+        check(tmp_path / "gone.mcap")
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
