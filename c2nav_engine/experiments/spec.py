@@ -15,6 +15,7 @@ from c2nav_engine.experiments.asking import ASKING_OPTIONS
 from c2nav_engine.experiments.parsing import parser_named
 from c2nav_engine.experiments.rankers import DEFAULT_RANKER, RANKERS
 from c2nav_engine.navigator.variants import preset
+from c2nav_engine.sensing.noise import NoiseConfig
 
 
 @dataclass(frozen=True)
@@ -48,12 +49,22 @@ class Setting:
     parser: str = "english"
 
     def check(self) -> None:
-        """Reject unknown names before anything starts; raises `UsageError`."""
+        """Reject unknown names and impossible noise before anything starts; raises `UsageError`."""
         profile_named(self.profile)
         parser_named(self.parser)
         if self.ranker not in RANKERS:
             message = f"expected a ranker ({', '.join(RANKERS)}), came {self.ranker!r}"
             raise UsageError(message)
+        _ = self.noise
+
+    @property
+    def noise(self) -> NoiseConfig:
+        """How unreliable sensing is; raises `UsageError` where that makes no sense."""
+        return NoiseConfig(
+            translation=self.odometry_noise,
+            rotation=self.odometry_noise,
+            depth=self.depth_noise,
+        )
 
     @cached_property
     def identity(self) -> str:

@@ -22,7 +22,6 @@ from c2nav_engine.runner.record import EpisodeOutcome
 from c2nav_engine.runner.recording import TraceWriter
 from c2nav_engine.runner.source import Source, open_source
 from c2nav_engine.runner.worlds import Worlds, WorldsConfig
-from c2nav_engine.sensing.noise import NoiseConfig
 from c2nav_engine.sensing.renderer import Renderer
 from c2nav_engine.world.scene import Scene
 
@@ -101,11 +100,7 @@ def workbench_of(setting: Setting, run: Path) -> Workbench:
             lambda: completion_for(setting.ranker, setting.ranker_options),
             run / "legs",
         ),
-        noise=NoiseConfig(
-            translation=setting.odometry_noise,
-            rotation=setting.odometry_noise,
-            depth=setting.depth_noise,
-        ),
+        noise=setting.noise,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import TypeVar
 
@@ -34,8 +35,8 @@ class OptionReader:
         return self._read(name, default, int)
 
     def number(self, name: str, default: float) -> float:
-        """An option as a number."""
-        return self._read(name, default, float)
+        """An option as a finite number."""
+        return self._read(name, default, _finite)
 
     def flag(self, name: str, *, default: bool) -> bool:
         """An option as true or false."""
@@ -47,7 +48,7 @@ class OptionReader:
 
     def optional_number(self, name: str) -> float | None:
         """An option as a number, or None when absent."""
-        return self._read(name, None, float)
+        return self._read(name, None, _finite)
 
     def choice(self, name: str, default: str, *, among: tuple[str, ...]) -> str:
         """An option out of a few words."""
@@ -76,6 +77,13 @@ class OptionReader:
         except ValueError:
             message = f"expected a value for {name} of the ranker {self._ranker}, came {text!r}"
             raise UsageError(message) from None
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(text)
+    return value
 
 
 def _flag(text: str) -> bool:

@@ -37,10 +37,11 @@ class NoiseConfig:
     def __post_init__(self) -> None:
         """Reject what is no deviation or probability; raises `UsageError`."""
         deviations = (self.translation, self.rotation, self.drift_rad_per_m, self.depth)
-        if min(deviations) < 0.0 or not 0.0 <= self.holes <= 1.0:
+        sound = all(0.0 <= deviation < math.inf for deviation in deviations)
+        if not sound or not 0.0 <= self.holes <= 1.0:
             message = (
-                f"expected deviations of at least 0 and holes in [0, 1], came {self}; "
-                "correct the noise options"
+                "expected deviations as finite numbers of at least 0 and holes in [0, 1], "
+                f"came {self}; correct the noise options"
             )
             raise UsageError(message)
 

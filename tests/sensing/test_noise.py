@@ -111,7 +111,18 @@ def test_holes_stay_holes():
     assert not sensors(depth=0.5).depth(np.zeros((10, 10), np.float32)).any()
 
 
-@pytest.mark.parametrize("options", [{"translation": -0.1}, {"holes": 1.5}, {"depth": -1.0}])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"translation": -0.1},
+        {"holes": 1.5},
+        {"depth": -1.0},
+        {"rotation": math.inf},
+        {"drift_rad_per_m": math.nan},
+        {"depth": math.nan},
+        {"holes": math.nan},
+    ],
+)
 def test_impossible_noise_is_refused(options):
     with pytest.raises(UsageError, match="expected deviations"):
         NoiseConfig(**options)
