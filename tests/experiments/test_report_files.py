@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.report.content import Annex
 from c2nav_engine.experiments.report.grids import Grid, GridRow
 from c2nav_engine.experiments.report.writing import write_report
@@ -112,6 +113,24 @@ def test_the_same_rows_give_the_same_bytes(tmp_path: Path) -> None:
     for path in sorted((tmp_path / "a").rglob("*.*")):
         twin = tmp_path / "b" / path.relative_to(tmp_path / "a")
         assert path.read_bytes() == twin.read_bytes(), path.name
+
+
+def test_a_run_named_twice_is_refused(tmp_path: Path) -> None:
+    make_run(tmp_path / "run", ("full",), by_chance(RATES), episodes=4)
+    (tmp_path / "link").symlink_to(tmp_path / "run")
+    for again in (tmp_path / "run", tmp_path / "run" / ".." / "run", tmp_path / "link"):
+        with pytest.raises(UsageError, match="expected each run once"):
+            write_report([tmp_path / "run", again], tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_killed_run_is_told_how_it_is_finished(tmp_path: Path) -> None:
+    make_run(tmp_path / "run", ("full",), by_chance(RATES), episodes=4)
+    (tmp_path / "run" / "episodes.parquet").unlink()
+    with pytest.raises(UsageError, match=r"--out .*run --resume"):
+        write_report([tmp_path / "run"], tmp_path / "out")
+    with pytest.raises(UsageError, match="make one with"):
+        write_report([tmp_path], tmp_path / "out")
 
 
 def test_an_annex_follows_the_chapters_in_every_text_format(tmp_path: Path) -> None:

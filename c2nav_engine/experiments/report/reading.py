@@ -71,6 +71,12 @@ class Run:
 def read_run(folder: Path) -> Run:
     """Read a run folder; raises `UsageError` where it is none."""
     path = folder / "manifest.json"
+    if path.is_file() and not (folder / "episodes.parquet").is_file():
+        message = (
+            f"expected a run that wrote its tables, came {folder}, which goes on or was killed; "
+            f"finish it with `c2nav run SOURCE --out {folder} --resume` and the options of before"
+        )
+        raise UsageError(message)
     if not path.is_file() or not (folder / "episodes.parquet").is_file():
         message = (
             f"expected a run folder with manifest.json and episodes.parquet, came {folder}; "

@@ -8,6 +8,7 @@ from typing import Any
 
 import jinja2
 
+from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.report.content import Annex, Chapter, Report, report_of
 from c2nav_engine.experiments.report.grids import Grid
 from c2nav_engine.experiments.report.plots import Plot, write_plots
@@ -27,8 +28,9 @@ def write_report(folders: Sequence[Path], out: Path, *, annexes: Sequence[Annex]
         annexes: Tables to add after those of the runs.
 
     Raises:
-        UsageError: A folder is no run.
+        UsageError: A folder is no run, or is named twice.
     """
+    _check_distinct(folders)
     report = report_of([read_run(folder) for folder in folders], annexes)
     places = {name: out / name for name in ("csv", "latex", "plots")}
     for place in places.values():
@@ -42,6 +44,17 @@ def write_report(folders: Sequence[Path], out: Path, *, annexes: Sequence[Annex]
     (out / "report.md").write_text(_markdown(report), encoding="utf-8")
     (out / "report.html").write_text(_html(report, plots), encoding="utf-8")
     return report
+
+
+def _check_distinct(folders: Sequence[Path]) -> None:
+    """A run that is read twice would count its episodes twice."""
+    seen: dict[Path, Path] = {}
+    for folder in folders:
+        place = folder.resolve()
+        if place in seen:
+            message = f"expected each run once, came {seen[place]} and {folder}; name it once"
+            raise UsageError(message)
+        seen[place] = folder
 
 
 def _markdown(report: Report) -> str:
