@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import errno
 import importlib
+import itertools
 import os
 import select
 import sys
@@ -17,7 +18,7 @@ from collections.abc import Callable, Sequence
 import tyro
 
 from app.commands.importing import uncollected
-from c2nav_engine.errors import C2NavError, InputError, MissingExtra, RankerStopped
+from c2nav_engine.errors import C2NavError, InputError, MissingExtra, RankerStopped, UsageError
 
 Command = Callable[..., int]
 
@@ -41,6 +42,9 @@ COMMANDS = (
     "bench",
 )
 """Subcommands; each is a function, or a table of them, of that name in `app.commands`."""
+
+_PLACES = ("--out", "--into", "--pictures")
+"""Options that name where a command writes."""
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -102,6 +106,7 @@ def _output_closed() -> bool:
 
 def _dispatch(words: list[str]) -> int:
     """Load only the named subcommand: each brings its own heavy imports."""
+    _check_places(words)
     name = next((word for word in words if not word.startswith("-")), "")
     if name not in COMMANDS:
         return _code(tyro.extras.subcommand_cli_from_dict(_everything(), args=words))
@@ -111,6 +116,14 @@ def _dispatch(words: list[str]) -> int:
             tyro.extras.subcommand_cli_from_dict(command, args=words[1:], prog=f"c2nav {name}")
         )
     return _code(tyro.cli(command, args=words[1:], prog=f"c2nav {name}"))
+
+
+def _check_places(words: list[str]) -> None:
+    """An empty name, as of an unset variable, would mean the working folder to a path."""
+    for option in _PLACES:
+        if f"{option}=" in words or (option, "") in itertools.pairwise(words):
+            message = f"expected a file or folder after {option}, came an empty word; name one"
+            raise UsageError(message)
 
 
 def _everything() -> dict[str, Command]:

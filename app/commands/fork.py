@@ -15,7 +15,7 @@ from c2nav_engine.contract.answers import parse
 from c2nav_engine.contract.outcome import Ordering
 from c2nav_engine.contract.render import render
 from c2nav_engine.errors import UsageError
-from c2nav_engine.experiments.rankers import DEFAULT_RANKER, seats_for
+from c2nav_engine.experiments.rankers import DEFAULT_RANKER, check_unattended, seats_for
 from c2nav_engine.navigator.config import LoopConfig
 from c2nav_engine.navigator.requests import Ask
 from c2nav_engine.runner.episode_run import run_to_end
@@ -40,6 +40,7 @@ def fork(
     json: JsonOpt = False,
 ) -> int:
     """Run a trace again up to a decision, answer it otherwise, and go on (needs the scene)."""
+    check_unattended(ranker)
     check_file(out, trace)
     parent = read_trace(trace)
     decision = next((e for e in parent.exchanges if e.decision == at), None)

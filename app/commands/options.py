@@ -80,6 +80,9 @@ def ids(text: str) -> tuple[str, ...]:
             message = f"expected a rising range of episode ids, came {word!r}"
             raise UsageError(message)
         found += [str(number) for number in range(first, last + 1)]
+    if text and not found:
+        message = f"expected episode ids, as in 1,5-9, came {text!r}; leave the option out for all"
+        raise UsageError(message)
     return tuple(found)
 
 

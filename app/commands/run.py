@@ -8,7 +8,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import tyro
 
@@ -30,7 +30,7 @@ from app.commands.run_words import error_lines, progress_bar, tell_rows
 from c2nav_engine.errors import UsageError
 from c2nav_engine.experiments.batch import BatchResult, run_batch
 from c2nav_engine.experiments.executors.choosing import EXECUTORS, executor_for
-from c2nav_engine.experiments.rankers import DEFAULT_RANKER, RANKERS
+from c2nav_engine.experiments.rankers import DEFAULT_RANKER, check_unattended
 from c2nav_engine.experiments.spec import RunSpec, Setting
 from c2nav_engine.experiments.summary import summarise
 from c2nav_engine.experiments.working import source_of
@@ -122,10 +122,10 @@ def spec_of(
         InputError: A name, file or scene does not exist.
     """
     setting.check()
-    if RANKERS[setting.ranker].interactive:
-        message = f"the ranker {setting.ranker} needs the inspector; use `c2nav inspect`"
-        raise UsageError(message)
-    names = words(variants)
+    check_unattended(setting.ranker)
+    names = _some(words(variants), f"variants, as in full,base; came --variants {variants!r}")
+    numbers = whole_numbers(seeds, "seeds")
+    _some(numbers, f"seeds, as in 0,1; came --seeds {seeds!r}")
     for name in names:
         preset(name)
     source = source_of(setting)
@@ -136,9 +136,19 @@ def spec_of(
         setting=setting,
         episodes=tuple(episode.episode_id for episode in chosen),
         variants=names,
-        seeds=whole_numbers(seeds, "seeds"),
+        seeds=numbers,
         scenes=tuple(episode.scene_id for episode in chosen),
     )
+
+
+T = TypeVar("T")
+
+
+def _some(found: tuple[T, ...], what: str) -> tuple[T, ...]:
+    if not found:
+        message = f"expected one or more {what}"
+        raise UsageError(message)
+    return found
 
 
 def _code(result: BatchResult) -> int:

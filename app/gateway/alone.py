@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import socket
 from collections.abc import Callable
 
@@ -10,6 +11,7 @@ from starlette.types import ASGIApp
 
 from c2nav_engine.errors import UsageError
 
+_LAST_PORT = 65_535
 _WAITING = 64
 """Connections that may wait while the server starts."""
 
@@ -55,7 +57,13 @@ def serve_alone(
 
 
 def listen(host: str, port: int) -> socket.socket:
-    """Take the port, 0 any free one; raises `UsageError` when somebody has it."""
+    """Take the port, 0 any free one; raises `UsageError` for a port or host that cannot be had."""
+    if not 0 <= port <= _LAST_PORT:
+        message = f"expected a port from 0 to {_LAST_PORT}, came {port}; choose one with --port"
+        raise UsageError(message)
+    if not host:  # The system would take it for every address of this machine.
+        message = "expected an address of this machine, came an empty one; give one with --host"
+        raise UsageError(message)
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     # asyncio turns Nagle's algorithm off only where it reads that the protocol is TCP; with it on,
     # the last part of an answer waits for a delayed acknowledgement: 40 ms a step.
@@ -63,8 +71,18 @@ def listen(host: str, port: int) -> socket.socket:
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         listener.bind((host, port))
+    except (socket.gaierror, UnicodeError) as error:
+        listener.close()
+        message = (
+            f"expected an address of this machine, came {host}, which does not resolve ({error}); "
+            "correct --host"
+        )
+        raise UsageError(message) from error
     except OSError as error:
         listener.close()
+        if error.errno == errno.EADDRNOTAVAIL:
+            message = f"expected an address of this machine, came {host} ({error}); correct --host"
+            raise UsageError(message) from error
         message = f"expected a free port, came {host}:{port} ({error}); choose another with --port"
         raise UsageError(message) from error
     # Whoever comes between the printed address and the first answer waits, and is not refused.

@@ -52,6 +52,16 @@ def seats_for(name: str, options: Options | None = None) -> SeatFor:
     return RANKERS[name].make(options or {})
 
 
+def check_unattended(name: str) -> None:
+    """Reject a ranker that needs a person at the inspector; raises `UsageError`."""
+    if name in RANKERS and RANKERS[name].interactive:
+        message = (
+            f"expected a ranker that answers by itself, came {name}, which needs the inspector; "
+            "use `c2nav inspect`"
+        )
+        raise UsageError(message)
+
+
 def ranker_for(name: str, options: Options | None = None) -> AskingRanker:
     """A ranker for questions that exist already; raises `UsageError` where there can be none."""
     seats_for_name = RANKERS.get(name)

@@ -8,6 +8,7 @@ import json
 import pytest
 
 from app.cli import main
+from tests.helpers.exchanges import write_fake
 
 
 def refused(capsys, *words: str) -> str:
@@ -92,6 +93,58 @@ def test_an_unknown_ranker_variant_or_profile_names_those_that_exist(capsys, tmp
 def test_a_person_cannot_rank_a_batch(capsys, tmp_path):
     error = refused(capsys, "run", "builtin", "--out", str(tmp_path / "run"), "--ranker", "human")
     assert "c2nav inspect" in error
+
+
+def test_a_person_cannot_go_on_with_a_fork(capsys, tmp_path):
+    write_fake(tmp_path / "a.mcap", side_px=16)
+    words = ("--at", "0", "--ranking", "A", "--out", str(tmp_path / "b.mcap"), "--ranker", "human")
+    assert "c2nav inspect" in refused(capsys, "fork", str(tmp_path / "a.mcap"), *words)
+
+
+@pytest.mark.parametrize("option", ["--odometry-noise", "--depth-noise"])
+@pytest.mark.parametrize("size", ["nan", "inf", "-0.1"])
+def test_noise_is_a_finite_deviation(capsys, tmp_path, option, size):
+    error = refused(capsys, "run", "builtin", "--out", str(tmp_path), "--dry-run", option, size)
+    assert "finite" in error
+
+
+def test_an_option_of_a_ranker_is_a_finite_number(capsys, tmp_path):
+    options = ("--ranker", "reference-cv", "--ranker-opt", "max_cost_usd=nan")
+    assert "max_cost_usd" in refused(
+        capsys, "run", "builtin", "--out", str(tmp_path / "r"), *options
+    )
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "named"),
+    [
+        ("--out", "", "after --out"),
+        ("--variants", "", "variants"),
+        ("--episodes", ",", "episode ids"),
+        ("--seeds", "", "seeds"),
+    ],
+)
+def test_nothing_does_not_stand_for_everything(capsys, tmp_path, monkeypatch, option, value, named):
+    monkeypatch.chdir(tmp_path)
+    words = () if option == "--out" else ("--out", "run")
+    assert named in refused(capsys, "run", "builtin", *words, option, value)
+    assert named in refused(capsys, "run", "builtin", *words, f"{option}={value}")
+    assert not [*tmp_path.iterdir()]
+
+
+def test_traces_are_named_and_there(capsys, tmp_path):
+    for command in ("info", "check"):
+        assert "expected one or more traces" in refused(capsys, "trace", command)
+        assert "gone.mcap" in refused(capsys, "trace", command, str(tmp_path / "gone.mcap"))
+
+
+def test_a_port_out_of_range_or_a_host_that_is_not_ours_is_named(capsys):
+    for port in ("99999", "-1"):
+        assert port in refused(capsys, "inspect", "--no-browser", "--port", port)
+    error = refused(capsys, "inspect", "--no-browser", "--host", "nosuch.invalid")
+    assert "nosuch.invalid, which does not resolve" in error and "--port" not in error
+    assert "--host" in refused(capsys, "inspect", "--no-browser", "--host", "")
+    assert "--host" in refused(capsys, "inspect", "--no-browser", "--host", "192.0.2.1")
 
 
 def test_an_unknown_episode_id_is_named(capsys, tmp_path):
