@@ -146,7 +146,7 @@ class RankStrip extends HTMLElement {
   chips(decision) {
     const orders = { cyclic: "asked in every order", both: "asked in both orders", once: "" };
     const words = [
-      `decision ${decision.number} of ${decision.total}`,
+      `decision ${decision.number} of 0–${decision.total - 1}`,
       `${decision.words} ${decision.sign}`,
       decision.contested ? `contested: ${decision.contested}` : "",
       decision.asked ? orders[decision.orders] : "not asked",

@@ -11,10 +11,9 @@ from app.inspector.panels.controls import buttons
 from app.inspector.panels.protocol import Dispatch, Html, Update
 from app.session import commands as c
 from app.session.branches import cost_of
-from app.session.decisions import LANES, Decision
+from app.session.decisions import Decision
 from app.session.snapshot import Assessment, Snapshot
 from app.session.wording import (
-    SIGNS,
     degrees,
     key_words,
     motion_words,
@@ -174,10 +173,3 @@ def _known(decision: Decision) -> Markup:
     return m.join([m.heading("Controller"), m.facts(rows)])
 
 
-def chips_of(decision: Decision, total: int) -> list[str]:
-    """Short facts about a decision."""
-    return [
-        f"decision {decision.number} of 0–{total - 1}",
-        f"{LANES[decision.lane]} {SIGNS[decision.lane]}",
-        decision.facts.contested,
-    ]
