@@ -9,6 +9,9 @@ const LANES = [50.5, 63, 75.5];
 const EVENTS = 88;
 const LAST = 101;
 const LABEL = { width: 162, rows: [13, 28] };
+const TARGET = { width: 12, height: 24 };
+const LEAST = 4; // px from mark to mark where a crowd leaves less
+const LINE = 12;
 const SIGNS = ["●", "▲", "■"];
 const NAMES = ["Seeing", "Transition", "Arriving"];
 
@@ -27,11 +30,11 @@ const styles = styled(`
   .mark:hover text { fill: var(--c2-blue-text); }
   .mark rect { fill: transparent; }
   .leg { stroke: var(--c2-line); stroke-dasharray: 2 3; }
-  .legname { fill: var(--c2-quiet); }
-  .here, .heretext { pointer-events: none; }
+  .here, .heretext, .legname { pointer-events: none; }
   .here { stroke: var(--c2-blue); stroke-width: 2; }
-  .heretext { fill: var(--c2-blue-text); font-weight: 600; paint-order: stroke; stroke: var(--c2-card);
-    stroke-width: 4px; }
+  /* What they are written across ends around the letters: wide enough to close the gaps between words. */
+  .heretext, .legname { paint-order: stroke; stroke: var(--c2-card); stroke-width: 6px; stroke-linejoin: round; }
+  .heretext, .legname.now { fill: var(--c2-blue-text); font-weight: 600; }
   .mark rect.regret { fill: var(--c2-ink); }
   .flag { cursor: ew-resize; }
   .flag line { stroke: var(--c2-blue); stroke-width: 1.5; stroke-dasharray: 5 2; }
@@ -53,8 +56,10 @@ class TimelineBar extends HTMLElement {
     this.setAttribute("aria-label", "timeline");
     this.tip = h("div", { class: "tip", hidden: true });
     this.stop = subscribe((state, changed) => {
-      if (changed.has("timeline")) this.soon({ ...state.timeline, here: state.place });
-      else if (changed.has("place") && this.timeline) this.soon({ ...this.timeline, here: state.place }, false);
+      const here = { ...state.place, leg: state.episode.leg };
+      const moved = changed.has("place") || changed.has("episode");
+      if (changed.has("timeline")) this.soon({ ...state.timeline, here });
+      else if (moved && this.timeline) this.soon({ ...this.timeline, here }, false);
     });
     this.sizes = new ResizeObserver(() => this.timeline && this.draw(this.timeline));
     this.sizes.observe(this);
@@ -87,11 +92,13 @@ class TimelineBar extends HTMLElement {
     if (!width) return;
     this.anew = false;
     this.followers = [];
+    this.targets = [];
     const steps = Math.max(timeline.steps, 12);
     this.x = (step) => LEFT + ((width - LEFT - RIGHT) * step) / steps;
     this.step = (x) => Math.round(((x - LEFT) * steps) / (width - LEFT - RIGHT));
     const svg = s("svg", { width, height: 112, role: "img" });
-    svg.append(...this.curve(timeline, width), ...this.lanes(timeline), ...this.here(width));
+    const [line, label] = this.here(width);
+    svg.append(...this.curve(timeline, width), ...this.lanes(timeline), line, ...this.names(timeline.legs), label);
     for (const end of timeline.leg_ends ?? []) svg.append(this.flag(end));
     svg.addEventListener("pointerdown", (event) => this.scrub(event));
     this.follow(timeline.here);
@@ -114,13 +121,10 @@ class TimelineBar extends HTMLElement {
         height: y(0) - y(timeline.band_m),
       }),
     ];
-    const label = (value, at) => s("text", { x: LEFT - 8, y: at + 4, "text-anchor": "end" }, value);
-    parts.push(label("0", y(0) + 1), label(`${+timeline.band_m.toFixed(1)}`, y(timeline.band_m) - 3));
-    if (most > timeline.band_m * 1.6) parts.push(label(most.toFixed(0), y(most) + 2));
-    for (const { leg, step } of timeline.legs) {
+    parts.push(...this.axis(timeline.band_m, most));
+    for (const { step } of timeline.legs) {
       if (timeline.legs.length < 2) break;
       parts.push(s("line", { class: "leg", x1: this.x(step), x2: this.x(step), y1: CURVE.top - 4, y2: y(0) }));
-      parts.push(s("text", { class: "legname", x: this.x(step) + 4, y: y(0) - 2 }, `leg ${leg + 1}`));
     }
     if (ghost.length > 1) parts.push(s("path", { class: "rest", d: line(ghost) }));
     const [rest, done] = [s("path", { class: "rest" }), s("path", { class: "curve" })];
@@ -131,15 +135,61 @@ class TimelineBar extends HTMLElement {
     return [...parts, rest, done];
   }
 
+  /** 0, the band and the greatest distance: the band's label gives way where the others are near. */
+  axis(band, most) {
+    const label = (value, y) => s("text", { class: "axis", x: LEFT - 8, y, "text-anchor": "end" }, value);
+    const [zero, top] = [this.y(0) + 5, this.y(most) + 6];
+    const far = most > band * 1.6;
+    const between = Math.max(far ? top + LINE : 0, Math.min(this.y(band) + 1, zero - LINE));
+    const labels = [label("0", zero), label(`${+band.toFixed(1)}`, between)];
+    return far ? [...labels, label(most.toFixed(0), top)] : labels;
+  }
+
+  /** Each leg by its name where it begins, or by its number where the next one is near. */
+  names(legs) {
+    if (legs.length < 2) return [];
+    return legs.map(({ leg, step }, index) => {
+      const end = index + 1 < legs.length ? this.x(legs[index + 1].step) : this.clientWidth;
+      const words = end - this.x(step) < 48 ? `${leg + 1}` : `leg ${leg + 1}`;
+      const name = s("text", { class: "legname", x: this.x(step) + 4, y: this.y(0) - 2 }, words);
+      this.followers.push((here) => name.classList.toggle("now", leg === here.leg));
+      return name;
+    });
+  }
+
+  /** Where each decision's mark stands: those of one lane at one step side by side, as far as the next
+   *  step of the lane or the edge leaves room. */
+  spread(marks) {
+    const crowds = new Map();
+    for (const mark of marks) {
+      const key = `${mark.lane} ${mark.step}`;
+      crowds.set(key, [...(crowds.get(key) ?? []), mark]);
+    }
+    const places = new Map();
+    const next = LANES.map(() => Infinity);
+    for (const crowd of [...crowds.values()].reverse()) {
+      const { lane, step } = crowd[0];
+      const room = (next[lane] - this.x(step)) / crowd.length;
+      const pitch = Math.max(LEAST, Math.min(TARGET.width, room));
+      const start = Math.min(this.x(step), this.clientWidth - 8 - pitch * (crowd.length - 1));
+      crowd.forEach((mark, index) => places.set(mark, start + pitch * index));
+      next[lane] = start;
+    }
+    return places;
+  }
+
   lanes(timeline) {
     const parts = NAMES.map((name, lane) => s("text", { x: 14, y: LANES[lane] + 4 }, `${SIGNS[lane]} ${name}`));
     parts.push(s("text", { x: 14, y: EVENTS + 4 }, "events"));
-    for (const mark of timeline.ghost?.marks ?? []) {
-      if (mark.step > timeline.last) parts.push(this.mark(mark, LANES[mark.lane], SIGNS[mark.lane], "far", null));
+    const ahead = (timeline.ghost?.marks ?? []).filter((mark) => mark.step > timeline.last);
+    const places = this.spread([...timeline.marks, ...ahead]);
+    for (const mark of ahead) {
+      parts.push(this.mark(mark, LANES[mark.lane], SIGNS[mark.lane], "far", null, places.get(mark)));
     }
     for (const mark of timeline.marks) {
       const sign = mark.fault ? "✕" : mark.open ? { 0: "○", 1: "△", 2: "□" }[mark.lane] : SIGNS[mark.lane];
-      const node = this.mark(mark, LANES[mark.lane], sign, mark.fault ? "bad" : "", { decision: mark.decision });
+      const [kind, target] = [mark.fault ? "bad" : "", { decision: mark.decision }];
+      const node = this.mark(mark, LANES[mark.lane], sign, kind, target, places.get(mark));
       this.followers.push((here) => {
         const now = mark.decision === here.decision;
         node.classList.toggle("now", now);
@@ -153,8 +203,8 @@ class TimelineBar extends HTMLElement {
       const place = crowd.get(event.step) ?? 0;
       const fits = this.x(event.step) + 12 * place < this.clientWidth - 8;
       crowd.set(event.step, place + 1);
-      const shift = fits ? 12 * place : -12 * place;
-      const node = this.mark(event, EVENTS, event.sign, event.fault ? "bad" : "", { step: event.step }, shift);
+      const x = this.x(event.step) + (fits ? 12 * place : -12 * place);
+      const node = this.mark(event, EVENTS, event.sign, event.fault ? "bad" : "", { step: event.step }, x);
       this.followers.push((here) => node.classList.toggle("far", event.step > here.step));
       parts.push(node);
     }
@@ -170,10 +220,11 @@ class TimelineBar extends HTMLElement {
       const group = s(
         "g",
         { class: "mark" },
-        s("rect", { x: x - 6, y: LAST - 12, width: 12, height: 24 }),
+        s("rect", { x: x - TARGET.width / 2, y: LAST - TARGET.height / 2, ...TARGET }),
         s("rect", { class: "regret", x: x - 2, width: 4, y: LAST + 5 - height, height }),
       );
-      this.reacts(group, { step, words: `decision ${decision} · regret ${m.toFixed(1)} m` }, { decision });
+      const mark = { step, words: `decision ${decision} · regret ${m.toFixed(1)} m` };
+      this.reacts(group, { mark, target: { decision }, x, y: LAST });
       parts.push(group);
     }
     return parts;
@@ -198,32 +249,62 @@ class TimelineBar extends HTMLElement {
     return parts;
   }
 
-  mark(mark, y, sign, kind, target, shift = 0) {
-    const x = this.x(mark.step) + shift;
+  mark(mark, y, sign, kind, target, x = this.x(mark.step)) {
     const group = s(
       "g",
       { class: `mark ${kind}` },
-      s("rect", { x: x - 6, y: y - 12, width: 12, height: 24 }),
+      s("rect", { x: x - TARGET.width / 2, y: y - TARGET.height / 2, ...TARGET }),
       s("text", { x, y: y + 4 }, sign),
     );
-    this.reacts(group, mark, target);
+    this.reacts(group, { mark, target, x, y });
     return group;
   }
 
-  reacts(group, mark, target) {
-    group.addEventListener("pointerenter", () => {
-      this.tip.textContent = mark.words;
-      this.tip.hidden = false;
-      const room = this.clientWidth - 490;
-      this.tip.style.left = `${Math.max(8, Math.min(this.x(mark.step) - 40, room))}px`;
-    });
+  reacts(group, one) {
+    if (one.target) this.targets.push(one);
+    const show = (event) => {
+      const { nearest, all } = this.under(event, one);
+      this.show(nearest, all.length);
+    };
+    group.addEventListener("pointerenter", show);
+    group.addEventListener("pointermove", show);
     group.addEventListener("pointerleave", () => (this.tip.hidden = true));
-    if (!target) return;
-    group.addEventListener("pointerdown", (event) => {
-      event.stopPropagation();
-      if (mark.opens) send("open_flip", mark.opens);
-      else send("go", target);
-    });
+    if (one.target) group.addEventListener("pointerdown", (event) => this.press(event, one));
+  }
+
+  show({ mark, x }, crowd = 1) {
+    this.tip.textContent = crowd > 1 ? `${mark.words} · one of ${crowd} here, click again for the next` : mark.words;
+    this.tip.hidden = false;
+    this.tip.style.left = `${Math.max(8, Math.min(x - 40, this.clientWidth - 490))}px`;
+  }
+
+  /** Targets are taller than lanes and marks can crowd: of all under the pointer those of the nearest
+   *  lane, and the nearest of them. Where there is none, the one that heard the event. */
+  under({ clientX, clientY }, own) {
+    const box = this.shadowRoot.querySelector("svg").getBoundingClientRect();
+    const across = (one) => Math.abs(one.x - (clientX - box.left));
+    const down = (one) => Math.abs(one.y - (clientY - box.top));
+    const hit = this.targets.filter((one) => across(one) <= TARGET.width / 2 && down(one) <= TARGET.height / 2);
+    if (!own.target || !hit.length) return { nearest: own, all: [own] };
+    const lane = Math.min(...hit.map(down));
+    const all = hit.filter((one) => down(one) === lane);
+    return { nearest: all.reduce((best, one) => (across(one) < across(best) ? one : best)), all };
+  }
+
+  /** Go to the mark under the pointer; pressed again, to the next of those that lie on it. */
+  press(event, own) {
+    event.stopPropagation();
+    const { nearest, all } = this.under(event, own);
+    const { clientX: x, clientY: y } = event;
+    const again = this.pressed && Math.hypot(x - this.pressed.x, y - this.pressed.y) < 4;
+    const inView = (one) => one.target.decision === this.timeline.here.decision;
+    const last = again ? all.findIndex(({ mark }) => mark === this.pressed.mark) : -1;
+    const from = last >= 0 ? last : inView(nearest) ? all.indexOf(nearest) : -1;
+    const one = from >= 0 ? all[(from + 1) % all.length] : nearest;
+    this.pressed = { x, y, mark: one.mark };
+    if (all.length > 1) this.show(one, all.length);
+    if (one.mark.opens) send("open_flip", one.mark.opens);
+    else send("go", one.target);
   }
 
   /** Where the label beside x does not lie on the curve: above it, or below where no leg is named. */
@@ -266,7 +347,8 @@ class TimelineBar extends HTMLElement {
     );
     const put = (at) => group.setAttribute("transform", `translate(${this.x(at)} 0)`);
     put(step);
-    this.reacts(group, { step, words: `your leg ${leg + 1} ends at step ${step} · drag it` }, null);
+    const mark = { step, words: `your leg ${leg + 1} ends at step ${step} · drag it` };
+    this.reacts(group, { mark, target: null, x: this.x(step) });
     group.addEventListener("pointerdown", (event) => {
       event.stopPropagation();
       let wanted = step;

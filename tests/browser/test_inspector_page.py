@@ -210,6 +210,110 @@ def test_the_label_of_the_place_in_view_does_not_lie_on_the_curve(recorded: Live
     assert between >= 0.0
 
 
+MARKS = f"""[...{TIMELINE}.shadowRoot.querySelectorAll('.mark')].map((node) => {{
+  const box = node.querySelector('rect').getBoundingClientRect();
+  return {{ sign: node.textContent, x: box.x + box.width / 2, y: box.y + box.height / 2 }};
+}})"""
+
+
+LADDER = f"""(steps) => {{
+  const {{ marks, ...rest }} = {TIMELINE}.timeline;
+  const step = {{ 4: 12, 5: 12, 6: 12, 7: 15 }};
+  const drawn = marks.map((mark) =>
+    mark.decision in step ? {{ ...mark, lane: 2, step: step[mark.decision] }} : mark);
+  {TIMELINE}.draw({{ ...rest, marks: drawn, steps: steps ?? rest.steps }});
+}}"""
+"""Decisions 4 to 6 as ground, journey and look-back of one step, 7 as the next ground."""
+
+
+def test_decisions_of_one_lane_at_one_step_stand_side_by_side(recorded: Live):
+    seen, _ = recorded
+    seen.page.evaluate(LADDER)
+    places = seen.page.evaluate(MARKS)
+    assert places[5]["x"] - places[4]["x"] >= 12
+    for decision in (4, 5, 6):
+        place = places[decision]
+        seen.page.mouse.move(place["x"], place["y"])
+        words = seen.page.locator("timeline-bar .tip").inner_text()
+        assert words == seen.state()["timeline"]["marks"][decision]["words"]
+        seen.page.mouse.click(place["x"], place["y"])
+        seen.until(f"s.place.decision === {decision}")
+
+
+def test_where_marks_crowd_further_clicks_reach_each(recorded: Live):
+    seen, _ = recorded
+    seen.page.evaluate(LADDER, 9000)
+    spot = seen.page.evaluate(MARKS)[5]
+    reached = set[int]()
+    for _ in range(4):
+        before = seen.state()["place"]["decision"]
+        seen.page.mouse.click(spot["x"], spot["y"])
+        seen.until(f"s.place.decision !== {before}", 10_000)
+        reached.add(seen.state()["place"]["decision"])
+    assert reached == {4, 5, 6, 7}
+    words = seen.page.locator("timeline-bar .tip").inner_text()
+    assert words.endswith("one of 4 here, click again for the next")
+
+
+def test_a_mark_is_hit_where_it_is_drawn_and_not_where_its_neighbours_target_reaches(
+    recorded: Live,
+):
+    seen, _ = recorded
+    marks = seen.state()["timeline"]["marks"]
+    above = {mark["step"] for mark in marks if mark["lane"] == 0}
+    below = next(m for m in marks if m["lane"] == 1 and m["step"] in above)
+    spot = seen.page.evaluate(MARKS)[below["decision"]]
+    seen.page.mouse.click(spot["x"], spot["y"] - 4)
+    seen.until(f"s.place.decision === {below['decision']}", 10_000)
+
+
+def test_the_active_leg_has_its_colour_and_weight_on_the_timeline(recorded: Live):
+    seen, _ = recorded
+    looks = """[...document.querySelector('timeline-bar').shadowRoot.querySelectorAll('.legname')]
+      .map((node) => [node.textContent, getComputedStyle(node).fill, getComputedStyle(node).fontWeight])"""
+    number = "getComputedStyle(document.querySelector('route-strip').shadowRoot.querySelector('.now-n')).color"
+    for leg, start in enumerate(seen.state()["timeline"]["legs"]):
+        seen.page.evaluate(f"c2nav.send('go', {{step: {start['step'] + 1}}})")
+        seen.until(f"s.episode.leg === {leg}")
+        seen.page.wait_for_timeout(100)
+        active = seen.page.evaluate(number)
+        drawn = seen.page.evaluate(looks)
+        assert [words for words, fill, weight in drawn if fill == active] == [f"leg {leg + 1}"]
+        assert [words for words, _, weight in drawn if weight == "600"] == [f"leg {leg + 1}"]
+
+
+def test_names_of_legs_and_of_the_place_stand_on_what_crosses_them(recorded: Live):
+    seen, _ = recorded
+    drawn = seen.page.evaluate(
+        f"""[...{TIMELINE}.shadowRoot.querySelectorAll('.curve, .rest, .legname, .heretext')]
+        .map((node) => {{
+          const look = getComputedStyle(node);
+          const halo = look.paintOrder.startsWith("stroke") && look.stroke !== "none";
+          return [node.classList[0], halo ? parseFloat(look.strokeWidth) : 0];
+        }})"""
+    )
+    names = [name for name, _ in drawn]
+    assert names.index("legname") > max(i for i, n in enumerate(names) if n in ("curve", "rest"))
+    assert all(halo >= 6 for name, halo in drawn if name in ("legname", "heretext"))
+
+
+@pytest.mark.parametrize("most_m", [4.9, 7.0, 11.0, 18.0, 60.0])
+def test_labels_of_the_curves_axis_keep_a_line_apart(recorded: Live, most_m: float):
+    seen, _ = recorded
+    labels = seen.page.evaluate(
+        f"""most => {{
+          const bar = {TIMELINE};
+          bar.draw({{ ...bar.timeline, ghost: null, curve: [[0, most], [9, 1]] }});
+          return [...bar.shadowRoot.querySelectorAll("svg > text[text-anchor=end]:not(.heretext)")]
+            .map((node) => [node.textContent, Number(node.getAttribute("y"))]);
+        }}""",
+        most_m,
+    )
+    assert [words for words, _ in labels] == ["0", "3", f"{most_m:.0f}"]
+    heights = sorted(height for _, height in labels)
+    assert min(b - a for a, b in zip(heights, heights[1:], strict=False)) >= 12
+
+
 SCRUB = """
 async () => {
   const bar = document.querySelector("timeline-bar"), box = bar.getBoundingClientRect();
