@@ -1,10 +1,13 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from playwright.sync_api import Browser
 
+from app.session.opened import Opened, Opening
 from app.session.worker import Session
 from c2nav_engine.contract.outcome import Ordering
 from tests.helpers import stage
@@ -51,11 +54,96 @@ def test_the_strip_shows_what_was_sent_and_greys_what_was_vetoed(live: Live):
     assert len(sizes) == 3
     for natural_width, natural_height, width, height in sizes:
         assert natural_width >= 160
-        assert min(width, height) >= 150  # 160 px with the winner's border
+        assert min(width, height) >= 160
         assert abs(width / height - natural_width / natural_height) < 0.02  # never cropped
     assert "vetoed" in seen.card("right").inner_text()
     seen.card("right").click()
     assert seen.state()["draft"]["tiers"] == []
+
+
+PICTURES = """[...document.querySelector('rank-strip').shadowRoot.querySelectorAll('img.picture')]
+  .map((node) => node.getBoundingClientRect())
+  .map((box) => [box.x, box.y, box.width, box.height])
+  .map((box) => box.map((length) => Math.round(10 * length) / 10))"""
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (1920, 1080)])
+def test_pictures_keep_their_size_and_place_whatever_their_rank(
+    browser: Browser, size: tuple[int, int]
+):
+    with inspector(stage.opened_live()) as (url, _), visit(browser, url, size=size) as seen:
+        seen.until(proposal(0))
+        before = seen.page.evaluate(PICTURES)
+        assert len({(width, height) for _, _, width, height in before}) == 1
+        assert min(min(box[2:]) for box in before) >= 160
+        for key in ("2", "1"):
+            seen.page.keyboard.press(key)
+        seen.until("s.draft.tiers.length === 2")
+        weights = seen.page.evaluate(
+            "[...document.querySelector('rank-strip').shadowRoot.querySelectorAll('.card')]"
+            ".map(node => getComputedStyle(node).boxShadow)"
+        )
+        assert len(set(weights)) == 3
+        moved = [[x, y - before[0][1], *rest] for x, y, *rest in seen.page.evaluate(PICTURES)]
+        assert moved == [[x, y - before[0][1], *rest] for x, y, *rest in before]
+
+
+ENLARGED = """() => {
+  const big = document.querySelector('enlarged-views').shadowRoot;
+  const boxes = [...big.querySelectorAll('img')].map((node) => {
+    const { left, top, right, bottom, width } = node.getBoundingClientRect();
+    return { left, top, right, bottom, times: width / node.naturalWidth };
+  });
+  return { boxes, said: big.querySelector('.times')?.textContent };
+}"""
+
+
+@pytest.mark.parametrize(("size", "times"), [((1280, 720), "1.8×"), ((1920, 1080), "2×")])
+def test_z_shows_all_alternatives_beside_each_other(
+    browser: Browser, size: tuple[int, int], times: str
+):
+    with inspector(stage.opened_live()) as (url, _), visit(browser, url, size=size) as seen:
+        seen.until(proposal(0))
+        seen.page.keyboard.down("z")
+        seen.page.wait_for_function(
+            "() => [...document.querySelectorAll('enlarged-views')]"
+            ".some(one => [...one.shadowRoot.querySelectorAll('img')].every(i => i.naturalWidth))"
+        )
+        shown = seen.page.evaluate(ENLARGED)
+        assert len(shown["boxes"]) == 3
+        assert len({box["top"] for box in shown["boxes"]}) == 1
+        for box in shown["boxes"]:
+            assert box["left"] >= 0
+            assert box["top"] >= 0
+            assert box["right"] <= size[0]
+            assert box["bottom"] <= size[1]
+            assert box["times"] == pytest.approx(float(times[:-1]), abs=0.01)
+        assert shown["said"] == times
+        seen.page.keyboard.press("1")
+        seen.until("s.draft.tiers.length === 1")
+        assert "1st" in seen.page.locator("enlarged-views .rank").all_inner_texts()
+        seen.page.keyboard.up("z")
+        assert not seen.page.locator("enlarged-views").is_visible()
+
+
+def test_z_sets_a_dozen_views_in_a_grid_that_needs_no_scrolling(live: Live):
+    seen, _ = live
+    seen.until(proposal(0))
+    seen.page.keyboard.down("z")
+    seen.page.evaluate(
+        """() => {
+          const big = document.querySelector('enlarged-views');
+          const [card] = big.state.decision.cards;
+          const cards = Array.from({ length: 12 }, (_, n) => ({ ...card, key: `${n}` }));
+          big.state = { ...big.state, decision: { ...big.state.decision, cards } };
+          big.draw();
+        }"""
+    )
+    shown = seen.page.evaluate(ENLARGED)
+    assert len(shown["boxes"]) == 12
+    assert len({box["top"] for box in shown["boxes"]}) > 1
+    room = "(() => { const n = document.querySelector('enlarged-views'); "
+    assert seen.page.evaluate(room + "return n.scrollHeight - n.clientHeight })()") <= 0
 
 
 def test_digits_rank_in_the_order_pressed(live: Live):
@@ -172,6 +260,57 @@ def test_the_page_says_what_it_waits_for_and_stays_alive(browser: Browser):
         seen.until(proposal(0))
 
 
+def many_legs() -> Opened:
+    """A recording whose first two legs, which are walked, stand far down in a long instruction."""
+    run = stage.finished_run()
+    walked = tuple(
+        f"{leg} {'and on through the next room ' * 3}".strip() for leg in run.header.legs
+    )
+    text = f"{'It is quiet here. ' * 60} {', '.join(walked)}. {'It is quiet there. ' * 40}"
+    episode = replace(run.header.episode, instruction=text)
+    header = replace(run.header, episode=episode, legs=walked)
+    return replace(
+        stage.opened_recording(),
+        open=lambda _: Opening(header, run.exchanges, run.footer, source="play.mcap"),
+    )
+
+
+STRIP = """() => {
+  const strip = document.querySelector('route-strip');
+  const box = (node) => node.getBoundingClientRect();
+  const [now, all] = [box(strip.shadowRoot.querySelector('.now')), box(strip)];
+  const signs = [...strip.shadowRoot.querySelectorAll('.more')];
+  const shown = signs.map((node) => getComputedStyle(node).opacity);
+  return { above: now.top - all.top, below: all.bottom - now.bottom, shown };
+}"""
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (1100, 700), (1024, 576)])
+def test_the_active_leg_is_in_view_and_more_text_is_announced(
+    browser: Browser, size: tuple[int, int]
+):
+    with inspector(many_legs()) as (url, _), visit(browser, url, size=size) as seen:
+        for leg, start in enumerate(seen.state()["timeline"]["legs"]):
+            seen.page.evaluate(f"c2nav.send('go', {{step: {start['step'] + 1}}})")
+            seen.until(f"s.episode.leg === {leg}")
+            seen.page.wait_for_timeout(300)
+            strip = seen.page.evaluate(STRIP)
+            assert strip["above"] >= 0
+            assert size == (1024, 576) or strip["below"] >= 0  # there it is too long to fit
+            assert strip["shown"] == ["1", "1"]
+
+
+def test_who_reads_another_leg_is_left_alone(browser: Browser):
+    with inspector(many_legs()) as (url, _), visit(browser, url, size=(1280, 720)) as seen:
+        seen.page.wait_for_timeout(500)
+        text = seen.page.locator("route-strip .text")
+        text.evaluate("node => { node.scrollTop = 0; }")
+        seen.page.evaluate("c2nav.send('go', {decision: 1})")
+        seen.until("s.place.decision === 1 && s.episode.leg === 0")
+        seen.page.wait_for_timeout(300)
+        assert text.evaluate("node => node.scrollTop") == 0
+
+
 TIMELINE = "document.querySelector('timeline-bar')"
 DRAWN = f"""[...{TIMELINE}.shadowRoot.querySelectorAll('svg *')].map((node) => [
   node.tagName, [...node.classList].sort().join(' '), node.textContent,
@@ -269,14 +408,16 @@ def test_a_mark_is_hit_where_it_is_drawn_and_not_where_its_neighbours_target_rea
 
 def test_the_active_leg_has_its_colour_and_weight_on_the_timeline(recorded: Live):
     seen, _ = recorded
-    looks = """[...document.querySelector('timeline-bar').shadowRoot.querySelectorAll('.legname')]
-      .map((node) => [node.textContent, getComputedStyle(node).fill, getComputedStyle(node).fontWeight])"""
-    number = "getComputedStyle(document.querySelector('route-strip').shadowRoot.querySelector('.now-n')).color"
+    looks = f"""[...{TIMELINE}.shadowRoot.querySelectorAll('.legname')].map((node) => {{
+      const look = getComputedStyle(node);
+      return [node.textContent, look.fill, look.fontWeight];
+    }})"""
+    number = seen.page.locator("route-strip .now-n")
     for leg, start in enumerate(seen.state()["timeline"]["legs"]):
         seen.page.evaluate(f"c2nav.send('go', {{step: {start['step'] + 1}}})")
-        seen.until(f"s.episode.leg === {leg}")
-        seen.page.wait_for_timeout(100)
-        active = seen.page.evaluate(number)
+        named = f"{TIMELINE}.shadowRoot.querySelector('.legname.now')?.textContent"
+        seen.page.wait_for_function(f"() => {named} === 'leg {leg + 1}'", timeout=10_000)
+        active = number.evaluate("node => getComputedStyle(node).color")
         drawn = seen.page.evaluate(looks)
         assert [words for words, fill, weight in drawn if fill == active] == [f"leg {leg + 1}"]
         assert [words for words, _, weight in drawn if weight == "600"] == [f"leg {leg + 1}"]
@@ -311,7 +452,7 @@ def test_labels_of_the_curves_axis_keep_a_line_apart(recorded: Live, most_m: flo
     )
     assert [words for words, _ in labels] == ["0", "3", f"{most_m:.0f}"]
     heights = sorted(height for _, height in labels)
-    assert min(b - a for a, b in zip(heights, heights[1:], strict=False)) >= 12
+    assert min(b - a for a, b in pairwise(heights)) >= 12
 
 
 SCRUB = """
