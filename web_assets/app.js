@@ -6,6 +6,7 @@ import "./rank-strip.js";
 import "./timeline-bar.js";
 import "./image-pair.js";
 import "./wait-card.js";
+import "./enlarged.js";
 import "./figure.js";
 import { hovering } from "./hover.js";
 import { keys } from "./keys.js";
@@ -27,7 +28,7 @@ const toasts = h("div", { id: "c2-toasts", role: "status", "aria-live": "polite"
 const lost = h("div", { id: "c2-lost", role: "alert", hidden: true }, "✕ no connection to the inspector; trying again…");
 
 function mount() {
-  document.body.append(top, lower, toasts, lost);
+  document.body.append(top, lower, document.createElement("enlarged-views"), toasts, lost);
   place();
   new MutationObserver(place).observe(document.getElementById("root"), { childList: true, subtree: true });
   window.addEventListener("resize", place);
@@ -148,13 +149,10 @@ function watchScene(turns = 300) {
 
 document.addEventListener("pointermove", hovering, { passive: true });
 document.addEventListener("keydown", keys, true);
-document.addEventListener(
-  "keyup",
-  (event) => {
-    if (event.key.toLowerCase() === "z") window.dispatchEvent(new CustomEvent("c2-big", { detail: false }));
-  },
-  true,
-);
+const small = () => window.dispatchEvent(new CustomEvent("c2-big", { detail: false }));
+document.addEventListener("keyup", (event) => event.key.toLowerCase() === "z" && small(), true);
+// A window that loses its keyboard hears of no key that is let go.
+window.addEventListener("blur", small);
 
 if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", mount);
 else mount();

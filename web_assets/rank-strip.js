@@ -7,16 +7,18 @@ const styles = styled(`
   .chips { display: flex; flex-wrap: wrap; gap: 6px; margin: 0 0 10px; }
   .chip { background: var(--c2-chip); border-radius: 10px; padding: 1px 9px; font-size: 12px; }
   .cards { display: flex; flex-wrap: wrap; gap: 8px; align-items: stretch; }
+  /* Its edge is a shadow, which takes no room: a picture keeps its size and place whatever its rank. */
   .card { position: relative; flex: 1 0 160px; max-width: 244px; min-width: 160px; padding: 0;
     display: flex; flex-direction: column; text-align: left; background: var(--c2-card);
-    border: 1px solid var(--c2-line); border-radius: 8px; overflow: hidden; cursor: pointer;
-    touch-action: none; user-select: none; }
+    border: 0; border-radius: 6px; overflow: hidden; cursor: pointer; touch-action: none; user-select: none;
+    --edge: 1px; --colour: var(--c2-line); box-shadow: 0 0 0 var(--edge) var(--colour), var(--glow, 0 0 #0000); }
   .card.wide { flex-basis: 240px; max-width: none; }
   .card.text { flex-basis: 100%; max-width: none; flex-direction: row; min-height: 48px; }
-  .card[data-rank="1"] { border: 4px solid var(--c2-blue); }
-  .card[data-rank="2"] { border-width: 2px; }
-  .card.lit { box-shadow: 0 0 0 3px var(--c2-halo); }
-  .card.vetoed { cursor: default; border-style: dashed; }
+  .card[data-rank="1"] { --edge: 4px; --colour: var(--c2-blue); }
+  .card[data-rank="2"] { --edge: 2px; }
+  .card.lit { --glow: 0 0 0 calc(var(--edge) + 3px) var(--c2-halo); }
+  .card.vetoed { cursor: default; }
+  .card.vetoed:not(:focus-visible) { --edge: 0px; outline: 1px dashed var(--c2-line); }
   .card.dragged { opacity: 0.45; }
   .card.before::before, .card.after::before { content: ""; position: absolute; z-index: 3; top: 0;
     bottom: 0; width: 5px; background: var(--c2-blue); }
@@ -53,8 +55,6 @@ const styles = styled(`
   .rail .space { flex: 1; }
   kbd { font: inherit; font-size: 12px; color: inherit; opacity: 0.75; margin-left: 4px; }
   .empty { color: var(--c2-quiet); margin: 6px 0; }
-  :host([data-big]) .card { flex-basis: 448px; max-width: none; }
-  :host([data-big]) .picture { image-rendering: pixelated; }
 `);
 
 const WHOSE = {
@@ -65,6 +65,18 @@ const WHOSE = {
   unasked: "not asked",
   waiting: "",
 };
+
+/** What stands below a picture: where it looks, how far it is free, why it is vetoed. */
+export function caption(card, decision) {
+  if (!card.feasible) {
+    return h("span", { class: "caption" }, h("span", { class: "x" }, "✕ "), h("b", {}, "vetoed"), ` · ${card.veto}`);
+  }
+  const words = [card.sha ? card.name : card.text];
+  if (card.free_m !== null) words.push(`free ${metres(card.free_m)}`);
+  if (card.rank === 1 && card.sha && decision.source !== "draft")
+    words.push(decision.pending ? "proposed" : "elected");
+  return h("span", { class: "caption" }, words.filter(Boolean).join(" · "));
+}
 
 class RankStrip extends HTMLElement {
   constructor() {
@@ -79,13 +91,10 @@ class RankStrip extends HTMLElement {
       this.draw(state);
       this.stands();
     });
-    this.onbig = (event) => this.toggleAttribute("data-big", event.detail);
-    window.addEventListener("c2-big", this.onbig);
   }
 
   disconnectedCallback() {
     this.stop?.();
-    window.removeEventListener("c2-big", this.onbig);
   }
 
   draw(state) {
@@ -193,7 +202,7 @@ class RankStrip extends HTMLElement {
     if (card.sha) node.append(this.picture(card.sha, { class: "picture", alt: "", draggable: "false" }));
     if (card.mark)
       node.append(h("span", { class: "pin", style: `left:${100 * card.mark[0]}%;--row:${card.mark[1]}`, title: "the asked place" }));
-    node.append(this.caption(card, decision));
+    node.append(caption(card, decision));
     if (!card.sha) node.append(node.querySelector(".rank") ?? "");
     return node;
   }
@@ -201,17 +210,6 @@ class RankStrip extends HTMLElement {
   spoken(card) {
     if (!card.feasible) return `${card.name}, vetoed: ${card.veto}`;
     return `${card.letter} ${card.name} ${card.ordinal}`.trim();
-  }
-
-  caption(card, decision) {
-    if (!card.feasible) {
-      return h("span", { class: "caption" }, h("span", { class: "x" }, "✕ "), h("b", {}, "vetoed"), ` · ${card.veto}`);
-    }
-    const words = [card.sha ? card.name : card.text];
-    if (card.free_m !== null) words.push(`free ${metres(card.free_m)}`);
-    if (card.rank === 1 && card.sha && decision.source !== "draft")
-      words.push(decision.pending ? "proposed" : "elected");
-    return h("span", { class: "caption" }, words.filter(Boolean).join(" · "));
   }
 
   rail(decision, state) {
