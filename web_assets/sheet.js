@@ -42,7 +42,7 @@ const GROUPS = [
   [
     "See",
     [
-      ["Z", "hold: pictures at twice the size"],
+      ["Z", "hold: all alternatives side by side, twice the pixels"],
       ["Shift click", "on a picture: where else was this in view"],
       ["G", "goal"],
       ["Ctrl K", "command palette"],
