@@ -419,7 +419,7 @@ def test_the_active_leg_has_its_colour_and_weight_on_the_timeline(recorded: Live
         seen.page.wait_for_function(f"() => {named} === 'leg {leg + 1}'", timeout=10_000)
         active = number.evaluate("node => getComputedStyle(node).color")
         drawn = seen.page.evaluate(looks)
-        assert [words for words, fill, weight in drawn if fill == active] == [f"leg {leg + 1}"]
+        assert [words for words, fill, _ in drawn if fill == active] == [f"leg {leg + 1}"]
         assert [words for words, _, weight in drawn if weight == "600"] == [f"leg {leg + 1}"]
 
 
