@@ -23,7 +23,8 @@ const styles = styled(`
   .curve { fill: none; stroke: var(--c2-ink); stroke-width: 2; }
   .rest { fill: none; stroke: var(--c2-far); stroke-width: 1.5; stroke-dasharray: 4 3; }
   .grid { stroke: var(--c2-line); stroke-width: 1; }
-  .mark text { font-size: 13px; fill: var(--c2-ink); text-anchor: middle; }
+  .mark text { font-size: 13px; fill: var(--c2-ink); text-anchor: middle; paint-order: stroke;
+    stroke: var(--c2-card); stroke-width: 2px; }
   .mark.far text { fill: var(--c2-far); }
   .mark.bad text, .bad { fill: var(--c2-vermilion); }
   .mark.now text { fill: var(--c2-blue-text); font-size: 15px; }
