@@ -2,14 +2,24 @@
 // Our own view lives in search parameters, never in the hash: viser builds its websocket address
 // from everything before the question mark.
 (() => {
-  const address = new URL(window.location.href);
-  const asked = address.searchParams.get("theme");
-  const dark = asked ? asked === "dark" : window.matchMedia("(prefers-color-scheme: dark)").matches;
-  document.documentElement.classList.toggle("c2-dark", dark);
-  if (dark === address.searchParams.has("darkMode")) return;
-  if (dark) address.searchParams.set("darkMode", "1");
-  else address.searchParams.delete("darkMode");
-  window.history.replaceState(null, "", address);
+  const system = window.matchMedia("(prefers-color-scheme: dark)");
+  const apply = () => {
+    const address = new URL(window.location.href);
+    const asked = address.searchParams.get("theme");
+    const dark = asked ? asked === "dark" : system.matches;
+    document.documentElement.classList.toggle("c2-dark", dark);
+    if (dark !== address.searchParams.has("darkMode")) {
+      if (dark) address.searchParams.set("darkMode", "1");
+      else address.searchParams.delete("darkMode");
+      window.history.replaceState(null, "", address);
+    }
+    return dark;
+  };
+  apply();
+  // viser has read the address by then; its colours hang on this one mark.
+  system.addEventListener("change", () => {
+    document.documentElement.dataset.mantineColorScheme = apply() ? "dark" : "light";
+  });
 })();
 
 // The map is drawn into a few pixels until the decision in view stands: where no GPU draws it, each

@@ -238,10 +238,28 @@ def test_nothing_overflows(browser: Browser, size: tuple[int, int]):
         assert (bar["x"], bar["width"], bar["height"]) == (0, size[0], 112)
 
 
+SCHEME = "document.documentElement.dataset.mantineColorScheme"
+PAPER = "getComputedStyle(document.body).backgroundColor"
+
+
 def test_dark_follows_the_system(browser: Browser):
     with inspector(stage.opened_live()) as (url, _), visit(browser, url, dark=True) as seen:
-        scheme = seen.page.evaluate("document.documentElement.dataset.mantineColorScheme")
-        assert scheme == "dark"
+        assert seen.page.evaluate(SCHEME) == "dark"
+        dark = seen.page.evaluate(PAPER)
+        seen.page.emulate_media(color_scheme="light")
+        seen.page.wait_for_function(f"{SCHEME} === 'light'", timeout=5_000)
+        assert seen.page.evaluate(PAPER) != dark
+        assert "darkMode" not in seen.page.url
+        seen.page.emulate_media(color_scheme="dark")
+        seen.page.wait_for_function(f"{SCHEME} === 'dark'", timeout=5_000)
+        assert seen.page.evaluate(PAPER) == dark
+
+
+def test_a_theme_that_was_asked_for_stays(browser: Browser):
+    with inspector(stage.opened_live()) as (url, _), visit(browser, f"{url}?theme=light") as seen:
+        seen.page.emulate_media(color_scheme="dark")
+        seen.page.wait_for_timeout(300)
+        assert seen.page.evaluate(SCHEME) == "light"
 
 
 def test_the_page_says_what_it_waits_for_and_stays_alive(browser: Browser):
@@ -252,7 +270,7 @@ def test_the_page_says_what_it_waits_for_and_stays_alive(browser: Browser):
     ):
         seen.until("s.asking")
         seen.page.wait_for_selector("wait-card .card", timeout=10_000)
-        assert "query 1 of" in seen.page.locator("wait-card .card").inner_text()
+        assert "ranks decision 0" in seen.page.locator("wait-card .card").inner_text()
         seen.page.evaluate("c2nav.send('layer', {name: 'goal', on: true})")
         seen.until("s.asking && s.view.layers.includes('goal')")
         seen.until_node("/goal/disc")
