@@ -50,9 +50,62 @@ function taken(event) {
   return (event.key === " " || event.key === "Enter") && target.closest("button, a") !== null;
 }
 
+const PALETTE = "[data-mantine-shared-portal-node] [role=dialog]";
+const PATIENCE_MS = 5000;
+
+// What is typed after Ctrl K belongs to the palette, which takes a moment until it is there.
+let hasty = null;
+
+const opensPalette = (event) =>
+  (event.ctrlKey || event.metaKey) && !event.altKey && event.code === (event.shiftKey ? "KeyP" : "KeyK");
+
+/** Hold what is typed until the palette can take it; returns whether the key was held. */
+function held(event) {
+  if (hasty) deliver(document.activeElement);
+  if (!hasty) return false;
+  if (taken(event)) {
+    hasty = null;
+    return false;
+  }
+  if (event.key === "Escape" || (performance.now() - hasty.since > PATIENCE_MS && !document.querySelector(PALETTE))) {
+    hasty = null;
+    return event.key === "Escape";
+  }
+  if (event.ctrlKey || event.metaKey || event.altKey || /^(Shift|Control|Meta|Alt|AltGraph)$/.test(event.key)) return true;
+  event.preventDefault();
+  event.stopPropagation();
+  if (event.key === "Backspace") hasty.text = hasty.text.slice(0, -1);
+  else if (event.key.length === 1) hasty.text += event.key;
+  return true;
+}
+
+/** Give the palette's field what was typed before it was there. */
+function deliver(field) {
+  if (!hasty || !field?.matches(`${PALETTE} input`)) return;
+  const { text } = hasty;
+  hasty = null;
+  if (!text) return;
+  // The field belongs to React, which hears of a value that its own setter did not see.
+  const { set } = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value");
+  set.call(field, field.value + text);
+  field.dispatchEvent(new InputEvent("input", { bubbles: true, data: text, inputType: "insertText" }));
+}
+
+document.addEventListener("focusin", ({ target }) => deliver(target));
+document.addEventListener("pointerdown", () => (hasty = null), true);
+
 export function keys(event) {
+  if (sheet.open) {
+    // The browser closes it on Escape by itself.
+    if (event.key === "?" || opensPalette(event)) sheet.toggle();
+    if (event.key === "?") event.preventDefault();
+    if (!opensPalette(event)) return;
+  }
+  if (document.querySelector("dialog[open]")) return;
+  if (opensPalette(event) && !taken(event)) hasty = { since: performance.now(), text: "" };
+  else if (held(event)) return;
   if (event.ctrlKey || event.metaKey || event.altKey || taken(event)) return;
-  if (document.querySelector("[data-mantine-shared-portal-node] [role=dialog]")) return;
+  if (document.querySelector(PALETTE)) return;
   const key = event.key.toLowerCase();
   let action = PLAIN[key];
   if (event.shiftKey && key === "b") action = () => send("jump", { to: "worst_suspect" });

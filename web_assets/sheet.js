@@ -52,8 +52,12 @@ const GROUPS = [
 ];
 
 class Sheet {
+  get open() {
+    return Boolean(this.dialog?.open);
+  }
+
   toggle() {
-    if (this.dialog?.open) {
+    if (this.open) {
       this.dialog.close();
       return;
     }
