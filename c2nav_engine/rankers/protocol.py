@@ -7,6 +7,7 @@ from typing import Protocol, runtime_checkable
 
 from c2nav_engine.contract.prompt import Prompt, Ranked, Reply
 from c2nav_engine.contract.question import Question
+from c2nav_engine.rankers.tally import Telling
 
 
 @runtime_checkable
@@ -95,4 +96,13 @@ class Ranker(Protocol):
 
     def rank(self, question: Question) -> Ranked:
         """Ask in every order the question wants, parse, repair once, aggregate."""
+        ...
+
+
+@runtime_checkable
+class Counting(Ranker, Protocol):
+    """A ranker that tells how far a question is while it waits for answers."""
+
+    def rank_telling(self, question: Question, told: Telling) -> Ranked:
+        """As `rank`; `told` is called from the threads that ask."""
         ...

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from threading import BoundedSemaphore, Lock
 
@@ -40,6 +41,7 @@ from c2nav_engine.rankers.protocol import (
     Startable,
 )
 from c2nav_engine.rankers.reading import read
+from c2nav_engine.rankers.tally import Tally, Telling
 
 REPAIRABLE = (Invalid, Empty, Truncated, Refused)
 """Answers that a format reminder may mend. A tie or an abstention is well formed: pressing for a
@@ -92,10 +94,17 @@ class AskingRanker:
             RankerStopped: No further query makes sense, or the budget is used up.
             RankerUnavailable: A transport failure outlived its retries.
         """
+        return self._rank(question, Tally())
+
+    def rank_telling(self, question: Question, told: Telling) -> Ranked:
+        """As `rank`; tells how many queries are answered, of how many it takes so far."""
+        return self._rank(question, Tally(told))
+
+    def _rank(self, question: Question, tally: Tally) -> Ranked:
         self.start()
         shown = presentations(question, once=self._adapter.asks_once)
         asked = [render(question, order) for order in range(len(shown))]
-        queries, final = self._settle(asked)
+        queries, final = self._settle(asked, tally)
         outcome = aggregate(question, list(final.values()))
         return Ranked(outcome, tuple(queries), self.name, self._privileged)
 
@@ -105,7 +114,7 @@ class AskingRanker:
         For audits, which choose labels and orders themselves. Raises as `rank`.
         """
         self.start()
-        return tuple(self._settle([prompt])[0])
+        return tuple(self._settle([prompt], Tally())[0])
 
     def start(self) -> tuple[str, ...]:
         """Let the adapter try itself out, once; returns its warnings, which are logged too.
@@ -125,12 +134,13 @@ class AskingRanker:
         if isinstance(self._adapter, Closable):
             self._adapter.close()
 
-    def _settle(self, asked: list[Prompt]) -> tuple[list[Query], dict[int, Answered]]:
+    def _settle(self, asked: list[Prompt], tally: Tally) -> tuple[list[Query], dict[int, Answered]]:
         """Every query it took, and the final outcome of each presentation."""
         queries: list[Query] = []
         final: dict[int, Answered] = {}
         while asked:
-            finished = self._ask_until_answered(asked, queries)
+            tally.expect(len(asked))
+            finished = self._ask_until_answered(asked, queries, tally)
             final.update({query.prompt.order: query.outcome for query in finished})
             asked = [
                 _repaired(query.prompt)
@@ -140,13 +150,15 @@ class AskingRanker:
             ]
         return queries, final
 
-    def _ask_until_answered(self, prompts: list[Prompt], queries: list[Query]) -> list[Query]:
+    def _ask_until_answered(
+        self, prompts: list[Prompt], queries: list[Query], tally: Tally
+    ) -> list[Query]:
         """One finished query per prompt; every try is appended to `queries`."""
         finished: list[Query] = []
         for attempt in itertools.count():
             tried = [
                 Query(prompt, reply, read(prompt, reply))
-                for prompt, reply in zip(prompts, self._send(prompts), strict=True)
+                for prompt, reply in zip(prompts, self._send(prompts, tally), strict=True)
             ]
             queries += tried
             failed = [query for query in tried if isinstance(query.outcome, TransportFailure)]
@@ -173,11 +185,12 @@ class AskingRanker:
             "Mend that, then resume the run"
         )
 
-    def _send(self, prompts: Sequence[Prompt]) -> list[Reply]:
+    def _send(self, prompts: Sequence[Prompt], tally: Tally) -> list[Reply]:
         """One reply per prompt: from the cache where it has one, else from the adapter."""
         replies = [self._cache.get(prompt) if self._cache else None for prompt in prompts]
         missing = [index for index, reply in enumerate(replies) if reply is None]
-        asked = self._ask_adapter([prompts[index] for index in missing]) if missing else []
+        tally.came(len(prompts) - len(missing))
+        asked = self._ask_adapter([prompts[index] for index in missing], tally) if missing else []
         for index, reply in zip(missing, asked, strict=True):
             replies[index] = reply
             if self._cache:
@@ -187,17 +200,22 @@ class AskingRanker:
             self.spent.add(reply)
         return finished
 
-    def _ask_adapter(self, prompts: Sequence[Prompt]) -> list[Reply]:
+    def _ask_adapter(self, prompts: Sequence[Prompt], tally: Tally) -> list[Reply]:
         self.spent.check(self._config, more=len(prompts))
         if isinstance(self._adapter, BatchAdapter):
-            return self._batch(self._adapter, prompts)
+            replies = self._batch(self._adapter, prompts)
+            tally.came(sum(_arrived(reply) for reply in replies))
+            return replies
         if len(prompts) == 1 or self._config.concurrency == 1:
-            return [self._one(prompt) for prompt in prompts]
+            return [self._one(prompt, tally) for prompt in prompts]
         with ThreadPoolExecutor(len(prompts)) as pool:
-            return list(pool.map(self._one, prompts))
+            return list(pool.map(partial(self._one, tally=tally), prompts))
 
-    def _one(self, prompt: Prompt) -> Reply:
-        return self._timed(lambda: [self._adapter.answer(prompt)])[0]
+    def _one(self, prompt: Prompt, tally: Tally) -> Reply:
+        reply = self._timed(lambda: [self._adapter.answer(prompt)])[0]
+        if _arrived(reply):
+            tally.came()
+        return reply
 
     def _batch(self, adapter: BatchAdapter, prompts: Sequence[Prompt]) -> list[Reply]:
         return self._timed(lambda: adapter.answer_all(prompts))
@@ -208,6 +226,10 @@ class AskingRanker:
             replies = ask()
             share_s = (self._clock() - start_s) / max(1, len(replies))
         return [replace(reply, latency_s=reply.latency_s or share_s) for reply in replies]
+
+
+def _arrived(reply: Reply) -> bool:
+    return not isinstance(reply.outcome, TransportFailure)
 
 
 def _repaired(prompt: Prompt) -> Prompt:

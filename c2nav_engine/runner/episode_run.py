@@ -11,11 +11,13 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 from c2nav_engine.contract.prompt import Ranked
+from c2nav_engine.contract.question import Question
 from c2nav_engine.errors import InternalError, RankerUnavailable
 from c2nav_engine.navigator.loop import Loop
 from c2nav_engine.navigator.requests import Ask, Look, Move, Note, Request, Response, Stop, Unasked
 from c2nav_engine.navigator.state import Ending
-from c2nav_engine.rankers.protocol import Ranker
+from c2nav_engine.rankers.protocol import Counting, Ranker
+from c2nav_engine.rankers.tally import Telling
 from c2nav_engine.runner.exchange import Exchange, Override, Truth
 from c2nav_engine.runner.record import EpisodeOutcome, Footer, Header
 from c2nav_engine.runner.shell import Shell
@@ -127,8 +129,11 @@ class EpisodeRun:
             request, response, truth=truth, wall={"shell": self._clock() - start_s}
         )
 
-    def propose(self) -> Ranked:
-        """The ranker's answer to the pending question, without committing it; asked once."""
+    def propose(self, told: Telling | None = None) -> Ranked:
+        """The ranker's answer to the pending question, without committing it; asked once.
+
+        `told` hears how many queries are answered, where the ranker counts them.
+        """
         request = self._pending()
         if not isinstance(request, Ask) or self._parts.ranker is None:
             message = f"expected a pending question and a ranker, came {type(request).__name__}"
@@ -138,7 +143,7 @@ class EpisodeRun:
                 self._parts.before_ask(request, self.exchanges)
             start_s = self._clock()
             try:
-                ranked = self._parts.ranker.rank(request.question)
+                ranked = _ranked(self._parts.ranker, request.question, told)
             except RankerUnavailable as error:
                 self.end(EpisodeOutcome.ERROR, str(error))
                 raise
@@ -264,6 +269,12 @@ class EpisodeRun:
         except StopIteration as finished:
             ending: Ending = finished.value
             self.end(EpisodeOutcome(ending.value))
+
+
+def _ranked(ranker: Ranker, question: Question, told: Telling | None) -> Ranked:
+    if told is not None and isinstance(ranker, Counting):
+        return ranker.rank_telling(question, told)
+    return ranker.rank(question)
 
 
 def run_to_end(run: EpisodeRun) -> Footer:

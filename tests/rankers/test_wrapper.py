@@ -204,3 +204,21 @@ def test_the_record_keeps_every_query_and_who_answered():
     assert ranked.ranker == "probe"
     assert [query.reply.text for query in ranked.queries] == ["nonsense", "nonsense"]
     assert not ranked.privileged
+
+
+def test_it_tells_how_many_queries_are_answered_and_counts_repairs_but_no_failed_tries():
+    said = iter([DOWN, "dunno", "B > A > C"])
+    told: list[tuple[int, int]] = []
+    ranked = ranker(lambda prompt: next(said)).rank_telling(
+        question(), lambda answered, wanted: told.append((answered, wanted))
+    )
+    assert isinstance(ranked.outcome, Ordering)
+    assert list(dict.fromkeys(told)) == [(0, 1), (1, 1), (1, 2), (2, 2)]
+
+
+def test_queries_that_are_open_side_by_side_are_counted_as_they_come():
+    told: list[tuple[int, int]] = []
+    ranker(best_first("here"), concurrency=2).rank_telling(
+        question(Slot.GROUND), lambda answered, wanted: told.append((answered, wanted))
+    )
+    assert list(dict.fromkeys(told)) == [(0, 2), (1, 2), (2, 2)]
