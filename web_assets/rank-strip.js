@@ -1,6 +1,6 @@
 // The alternatives of the decision in view: click or drag them into order, ties, none of these.
 import { image, send, subscribe } from "./store.js";
-import { h, metres, styled } from "./look.js";
+import { h, metres, renew, styled } from "./look.js";
 
 const styles = styled(`
   :host { padding: 0 11px; }
@@ -51,6 +51,8 @@ const styles = styled(`
   .rail button { border: 1px solid var(--c2-line); background: var(--c2-card); border-radius: 6px;
     padding: 3px 10px; min-height: 28px; cursor: pointer; }
   .rail button.go { background: var(--c2-blue); border-color: var(--c2-blue); color: #fff; font-weight: 600; }
+  .rail button:disabled { background: var(--c2-chip); border-color: var(--c2-line); color: var(--c2-quiet);
+    cursor: default; }
   .rail button[aria-pressed="true"] { border-color: var(--c2-blue); color: var(--c2-blue-text); }
   .rail .space { flex: 1; }
   kbd { font: inherit; font-size: 12px; color: inherit; opacity: 0.75; margin-left: 4px; }
@@ -63,7 +65,6 @@ const WHOSE = {
   proposal: "proposed",
   committed: "committed",
   unasked: "not asked",
-  waiting: "",
 };
 
 /** What stands below a picture: where it looks, how far it is free, why it is vetoed. */
@@ -85,7 +86,7 @@ class RankStrip extends HTMLElement {
   }
 
   connectedCallback() {
-    const sections = ["decision", "draft", "asking", "view", "offer"];
+    const sections = ["decision", "draft", "asking", "view", "offer", "branch"];
     this.stop = subscribe((state, changed) => {
       if (this.drag || !sections.some((name) => changed.has(name))) return;
       this.draw(state);
@@ -101,7 +102,7 @@ class RankStrip extends HTMLElement {
     this.state = state;
     const decision = state.decision;
     if (!decision) {
-      this.shadowRoot.replaceChildren(h("p", { class: "empty" }, "The robot has not looked around yet"));
+      renew(this.shadowRoot, h("p", { class: "empty" }, "The robot has not looked around yet"));
       return;
     }
     const focused = this.shadowRoot.activeElement?.dataset.key;
@@ -114,9 +115,9 @@ class RankStrip extends HTMLElement {
       parts.push(cards);
     } else parts.push(h("p", { class: "empty" }, "Nothing was offered"));
     if (decision.asked) parts.push(this.rail(decision, state));
-    this.shadowRoot.replaceChildren(...parts.filter(Boolean));
+    renew(this.shadowRoot, ...parts.filter(Boolean));
     this.fill(decision.number);
-    if (focused) this.shadowRoot.querySelector(`[data-key="${CSS.escape(focused)}"]`)?.focus();
+    if (focused && this.shadowRoot.activeElement?.dataset.key !== focused) this.shadowRoot.querySelector(`[data-key="${CSS.escape(focused)}"]`)?.focus();
   }
 
   /** The picture where it stands here already, else a new one, still empty. */
@@ -215,26 +216,29 @@ class RankStrip extends HTMLElement {
   rail(decision, state) {
     const drafted = decision.source === "draft";
     const rail = h("div", { class: "rail" });
-    if (state.asking && state.asking.decision === decision.number && !drafted) {
-      rail.append(h("span", { class: "who" }, "asking…"));
+    const button = (type, label, key, more = {}) =>
+      h("button", { type: "button", "data-name": type, onclick: () => send(type), ...more }, label, h("kbd", {}, key));
+    const out = state.asking?.branch === state.branch.id && state.asking.decision === decision.number;
+    const waits = decision.source === "waiting";
+    if (waits) {
+      rail.append(h("span", { class: "who" }, out ? "asking…" : "waits for your ranking"));
     } else {
       rail.append(h("span", { class: "who" }, WHOSE[decision.source]), h("span", { class: "order" }, decision.outcome || "–"));
     }
     rail.append(h("span", { class: "space" }));
-    const more = [
-      ["none", "None", "X", state.draft.none],
-      ["tie", "Tie", "=", state.draft.tie_next],
-    ];
     if (drafted) {
-      for (const [type, label, key, pressed] of more)
-        rail.append(h("button", { type: "button", "aria-pressed": `${pressed}`, onclick: () => send(type) }, label, h("kbd", {}, key)));
-      rail.append(h("button", { type: "button", onclick: () => send("clear") }, "Clear", h("kbd", {}, "Esc")));
-      const go = decision.pending ? "Commit" : state.offer ? "Fork" : "Fork…";
-      rail.append(h("button", { type: "button", class: "go", onclick: () => send("commit") }, go, h("kbd", {}, "⏎")));
+      rail.append(
+        button("none", "None", "X", { "aria-pressed": `${state.draft.none}` }),
+        button("tie", "Tie", "=", { "aria-pressed": `${state.draft.tie_next}` }),
+        button("clear", "Clear", "Esc"),
+        button("commit", decision.pending ? "Commit" : state.offer ? "Fork" : "Fork…", "⏎", { class: "go" }),
+      );
     } else {
-      rail.append(h("button", { type: "button", title: "none of these", onclick: () => send("none") }, "None", h("kbd", {}, "X")));
+      rail.append(button("none", "None", "X", { title: "none of these" }));
+      // While the question is out, a commit takes the answer as soon as it comes.
+      const idle = waits && !out;
       if (decision.pending)
-        rail.append(h("button", { type: "button", class: "go", onclick: () => send("commit") }, "Commit", h("kbd", {}, "⏎")));
+        rail.append(button("commit", "Commit", "⏎", { class: "go", disabled: idle, title: idle && "rank the views first" }));
     }
     return rail;
   }

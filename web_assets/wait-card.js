@@ -1,6 +1,6 @@
 // What is being waited for, and what waits for a yes: question, fork, consent.
 import { send, subscribe } from "./store.js";
-import { h, styled } from "./look.js";
+import { h, renew, styled } from "./look.js";
 
 const styles = styled(`
   :host { pointer-events: none; }
@@ -17,6 +17,8 @@ const styles = styled(`
 
 const plural = (count, noun) => `${count} ${count === 1 ? noun : noun === "query" ? "queries" : `${noun}s`}`;
 
+const card = (name, ...parts) => h("div", { class: "card", "data-name": name, role: "status" }, ...parts);
+
 class WaitCard extends HTMLElement {
   constructor() {
     super();
@@ -24,7 +26,7 @@ class WaitCard extends HTMLElement {
   }
 
   connectedCallback() {
-    const sections = ["asking", "offer", "working", "consent_to", "playing", "timeline"];
+    const sections = ["asking", "let_go", "offer", "working", "consent_to", "playing", "timeline"];
     this.stop = subscribe((state, changed) => {
       this.state = state;
       if (sections.some((name) => changed.has(name))) this.draw();
@@ -37,37 +39,46 @@ class WaitCard extends HTMLElement {
   }
 
   draw() {
-    const { asking, offer, working, consent_to: host } = this.state;
+    const { asking, let_go: why, offer, working, consent_to: host } = this.state;
     clearInterval(this.ticking);
     const cards = [];
     if (host) cards.push(this.consent(host));
     if (offer) cards.push(this.offer(offer));
-    if (working) cards.push(h("div", { class: "card" }, `${working}…`, h("progress")));
+    if (working) cards.push(card("working", `${working}…`, h("progress")));
     if (this.state.timeline.place) cards.push(this.place(this.state.timeline.place));
+    if (why) cards.push(this.letGo(why));
     if (asking) {
-      const card = this.asking(asking);
-      if (card) cards.push(card);
+      cards.push(this.asking(asking));
       this.ticking = setInterval(() => this.draw(), 250);
     }
-    this.shadowRoot.replaceChildren(...cards);
+    renew(this.shadowRoot, ...cards);
   }
 
   /** Shown once a wait is long enough to be noticed. */
   asking(asking) {
     const elapsed = Date.now() / 1000 - asking.since_s;
     if (elapsed < 0.4) return null;
-    const expected = asking.median_s ? asking.median_s * asking.queries : null;
-    const query = asking.median_s
-      ? Math.min(asking.queries, 1 + Math.floor(elapsed / asking.median_s))
-      : 1;
-    const usual = expected ? ` of about ${expected.toFixed(1)} s` : "";
-    return h(
-      "div",
-      { class: "card", role: "status" },
+    const { usual_s: usual, answered, queries } = asking;
+    const facts = [
+      queries > 1 ? `${answered} of ${queries} queries answered` : "",
+      `${elapsed.toFixed(1)} s${usual ? `, usually ${usual.toFixed(1)} s` : ""}`,
+    ];
+    const share = usual && elapsed < usual ? { value: elapsed / usual, max: 1 } : {};
+    return card(
+      "question",
       h("span", {}, `${asking.ranker} ranks decision ${asking.decision}`),
-      h("span", { class: "quiet" }, `query ${query} of ${asking.queries} · ${elapsed.toFixed(1)} s${usual}`),
-      h("progress", expected ? { value: Math.min(elapsed / expected, 1), max: 1 } : {}),
+      h("span", { class: "quiet", "aria-live": "off" }, facts.filter(Boolean).join(" · ")),
+      h("progress", share),
       h("button", { onclick: () => send("cancel") }, "Cancel"),
+    );
+  }
+
+  /** Nobody answers any longer. *Ask again* stands where *Cancel* was: a second click is none. */
+  letGo(why) {
+    return card(
+      "question",
+      h("span", {}, `${why}: rank the views yourself, or ask again`),
+      h("button", { onclick: (event) => event.detail < 2 && send("ask_again") }, "Ask again"),
     );
   }
 
@@ -78,9 +89,8 @@ class WaitCard extends HTMLElement {
       `${offer.seconds.toFixed(0)} s`,
       offer.dollars ? `$${offer.dollars.toFixed(2)}` : "",
     ];
-    return h(
-      "div",
-      { class: "card" },
+    return card(
+      "offer",
       h("span", {}, offer.decisions ? `Forks here: about ${cost.filter(Boolean).join(", ")}` : "Forks here; what follows is not known yet"),
       h("button", { class: "go", onclick: () => send("commit") }, "Fork"),
       h("button", { onclick: () => send("clear") }, "Cancel"),
@@ -92,9 +102,8 @@ class WaitCard extends HTMLElement {
     const words = [`in view in ${count("seen")} of ${looks.length} looks`];
     if (count("vetoed")) words.push(`${count("vetoed")} only in a vetoed view`);
     if (count("hidden")) words.push(`${count("hidden")} hidden`);
-    return h(
-      "div",
-      { class: "card" },
+    return card(
+      "place",
       h("span", {}, `Asked place: ${words.join(", ")}`),
       h("span", { class: "quiet" }, basis),
       h("button", { onclick: () => send("forget_place") }, "Forget"),
@@ -102,9 +111,8 @@ class WaitCard extends HTMLElement {
   }
 
   consent(host) {
-    return h(
-      "div",
-      { class: "card" },
+    return card(
+      "consent",
       h("span", {}, `Pictures would go to ${host}, outside this machine; scene licence: ${this.state.licence || "unknown"}`),
       h("button", { class: "go", onclick: () => send("consent", { allow: true }) }, "Allow"),
       h("button", { onclick: () => send("consent", { allow: false }) }, "Refuse"),

@@ -80,10 +80,10 @@ def cost_of(decisions: tuple[Decision, ...]) -> Cost:
     )
 
 
-def median_query_s(decisions: tuple[Decision, ...]) -> float | None:
-    """Median latency of a query, for the wait; None before the first answer."""
-    latencies = [q.reply.latency_s for d in decisions if d.ranked for q in d.ranked.queries]
-    return statistics.median(latencies) if latencies else None
+def usual_answer_s(exchanges: tuple[Exchange, ...]) -> float | None:
+    """Median wall time of a whole answer, all its queries; None before the first."""
+    waits = [e.wall_s["rank"] for e in exchanges if e.ranked and "rank" in e.wall_s]
+    return statistics.median(waits) if waits else None
 
 
 def fork_estimate(decisions: tuple[Decision, ...], at: int) -> Cost:

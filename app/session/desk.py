@@ -20,7 +20,7 @@ from app.session.pictures import Album
 from app.session.placing import Sight
 from app.session.searching import Search
 from app.session.shelf import Shelf
-from app.session.snapshot import Assessment, Chooser, Notice, Reviews, Snapshot, View
+from app.session.snapshot import Asking, Assessment, Chooser, Notice, Reviews, Snapshot, View
 from app.session.story import Story, story_of
 from c2nav_engine.errors import C2NavError
 from c2nav_engine.navigator.requests import Ask
@@ -51,12 +51,14 @@ class Hands:
     Attributes:
         background: Runs a task on another thread and applies the message it returns.
         clock: Wall clock, seconds since the epoch.
+        post: Applies a message, from any thread.
         after_page: Returns once heavy work is in no page's way; called in the background.
         after_scene: Returns once the scene is sent, too.
     """
 
     background: Callable[[Callable[[], Message]], None]
     clock: Callable[[], float]
+    post: Callable[[Message], None]
     after_page: Callable[[], None] = lambda: None
     after_scene: Callable[[], None] = lambda: None
 
@@ -74,7 +76,7 @@ class Desk:
         self.stories: dict[str, Story] = {}
         self.runs: dict[str, Run] = {}
         self.asked: set[str] = set()
-        self.out: set[Errand] = set()
+        self.out: dict[Errand, Asking] = {}
         self.scene: Scene | None = None
         self.sight: Sight | None = None
         self.consent: Consent | None = None
@@ -122,8 +124,25 @@ class Desk:
             for name, state in self.snapshot.turning.items()
             if state.stage != "measuring"
         }
-        self.change(working="", asking=None, playing="", turning=turning)
+        self.let_go("No answer came")
+        self.change(working="", playing="", turning=turning)
         self.say(problem, fault=True)
+
+    def let_go(self, why: str) -> None:
+        """Wait no longer for the question that is out: the page says why and offers what helps."""
+        asking = self.snapshot.asking
+        if asking is not None:
+            self.asked.discard(asking.branch_id)
+            self.change(asking=None)
+            self.leave(asking.branch_id, why)
+
+    def leave(self, branch_id: str, why: str) -> None:
+        """Nobody answers the pending question of a branch, until it is asked again."""
+        self.change(let_go={**self.snapshot.let_go, branch_id: why})
+
+    def taken_up(self, branch_id: str) -> None:
+        """The pending question of a branch is out, answered or committed again."""
+        self.change(let_go={b: why for b, why in self.snapshot.let_go.items() if b != branch_id})
 
     def reopen(self, choice: Choice) -> None:
         """Open another entry, variant or ranker in place of what is open.

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import PurePath
 
-from app.session.branches import Branch, Origin, fork_estimate, median_query_s
+from app.session.branches import Branch, Origin, fork_estimate, usual_answer_s
 from app.session.desk import Desk, Errand, Message
 from app.session.draft import Draft, outcome_of
 from app.session.opened import ForkAt, Run
@@ -65,6 +65,7 @@ def ask(desk: Desk, branch_id: str) -> None:
         return
     if run.header.ranker == HUMAN:
         return
+    desk.taken_up(branch_id)
     if not desk.allowed:
         desk.change(consent_to=desk.opened.sends_to)
         return
@@ -72,22 +73,27 @@ def ask(desk: Desk, branch_id: str) -> None:
         desk.consent.keep(run)
     number = desk.stories[branch_id].decisions[-1].number
     desk.asked.add(branch_id)
-    desk.change(
-        asking=Asking(
-            decision=number,
-            since_s=desk.hands.clock(),
-            queries=_expected(waiting.question),
-            median_s=median_query_s(desk.stories[branch_id].decisions),
-        )
-    )
     errand = Errand(desk.generation, branch_id, number)
     if errand in desk.out:
-        return  # cancelled, but still with the model: its answer counts if it comes in time
-    desk.out.add(errand)
+        # Cancelled, but still with the model: its answer counts if it comes in time.
+        desk.change(asking=desk.out[errand])
+        return
+    asking = Asking(
+        branch_id,
+        decision=number,
+        since_s=desk.hands.clock(),
+        queries=_expected(waiting.question),
+        usual_s=usual_answer_s(desk.branches[branch_id].exchanges),
+    )
+    desk.out[errand] = asking
+    desk.change(asking=asking)
+
+    def told(answered: int, queries: int) -> None:
+        desk.hands.post(lambda desk: progressed(desk, errand, answered, queries))
 
     def task() -> Message:
         try:
-            ranked = run.propose()
+            ranked = run.propose(told)
         except C2NavError as error:
             problem = str(error)
             return lambda desk: failed(desk, errand, problem)
@@ -102,33 +108,64 @@ def _expected(question: Question) -> int:
     ]
 
 
+def progressed(desk: Desk, errand: Errand, answered: int, queries: int) -> None:
+    """Some queries of a question are answered, or it takes more than was thought."""
+    before = desk.out.get(errand)
+    if before is None:
+        return
+    desk.out[errand] = replace(before, answered=answered, queries=queries)
+    if desk.snapshot.asking == before:
+        desk.change(asking=desk.out[errand])
+
+
 def failed(desk: Desk, errand: Errand, problem: str) -> None:
     """The ranker cannot go on: a person may answer, or ask again."""
-    desk.out.discard(errand)
+    desk.out.pop(errand, None)
     if errand.generation != desk.generation:
         return
-    desk.change(asking=None, playing="")
-    desk.commit_when_answered = False
+    if _awaits(desk, errand):
+        desk.let_go("No answer came")
+        desk.change(playing="")
+        desk.commit_when_answered = False
     desk.asked.discard(errand.branch_id)
     desk.say(problem, fault=True)
+    run = desk.runs.get(errand.branch_id)
+    if run is not None and run.pending is None:
+        refresh(desk, errand.branch_id)  # the episode ended with it: there is nothing to rank
+    ask_here(desk)
 
 
 def answered(desk: Desk, errand: Errand, ranked: Ranked) -> None:
     """The ranker's answer came; it is too late once a person has answered."""
-    desk.out.discard(errand)
+    desk.out.pop(errand, None)
     if errand.generation != desk.generation:
         return
     branch_id = errand.branch_id
-    if desk.snapshot.asking is not None and desk.snapshot.asking.decision == errand.decision:
+    if _awaits(desk, errand):
         desk.change(asking=None)
-    desk.asked.discard(branch_id)
+        desk.asked.discard(branch_id)
     pending = desk.stories[branch_id].pending
-    if pending is None or pending.number != errand.decision:
-        return
-    desk.change(proposals={**desk.snapshot.proposals, branch_id: ranked})
-    if desk.commit_when_answered:
-        desk.commit_when_answered = False
-        commit_proposal(desk, branch_id)
+    if pending is not None and pending.number == errand.decision:
+        desk.taken_up(branch_id)
+        desk.change(proposals={**desk.snapshot.proposals, branch_id: ranked})
+        if desk.commit_when_answered:
+            desk.commit_when_answered = False
+            commit_proposal(desk, branch_id)
+    ask_here(desk)
+
+
+def ask_here(desk: Desk) -> None:
+    """Ask what the branch in view waits for, where another question stood before it."""
+    branch_id = desk.snapshot.branch.branch_id
+    if branch_id not in desk.snapshot.let_go and not desk.snapshot.consent_to:
+        ask(desk, branch_id)
+
+
+def _awaits(desk: Desk, errand: Errand) -> bool:
+    """Whether it is this errand that the page waits for."""
+    asking = desk.snapshot.asking
+    at = (errand.branch_id, errand.decision)
+    return asking is not None and (asking.branch_id, asking.decision) == at
 
 
 def commit_proposal(desk: Desk, branch_id: str) -> None:
@@ -150,6 +187,7 @@ def commit(desk: Desk, branch_id: str, override: Override | None) -> None:
         desk.change(playing="")
         desk.say(str(error), fault=True)
         return
+    desk.taken_up(branch_id)
     proposals = dict(desk.snapshot.proposals)
     proposals.pop(branch_id, None)
     desk.change(proposals=proposals, draft=Draft(), why="", offer=None)
@@ -287,8 +325,18 @@ def forked(desk: Desk, generation: int, origin: tuple[str, int], run: Run) -> st
 
 def cancel(desk: Desk) -> None:
     """Stop waiting: a person may answer at once; a late answer counts while none was committed."""
-    desk.asked.discard(desk.snapshot.branch.branch_id)
-    desk.change(asking=None, playing="")
+    desk.let_go("Cancelled")
+    desk.change(playing="")
+    desk.commit_when_answered = False
+
+
+def take_over(desk: Desk, branch_id: str) -> None:
+    """A person answers the pending question of a branch: nothing is waited for there."""
+    asking = desk.snapshot.asking
+    if asking is not None and asking.branch_id == branch_id:
+        desk.change(asking=None)
+    desk.asked.discard(branch_id)
+    desk.change(playing="")
     desk.commit_when_answered = False
 
 

@@ -98,7 +98,7 @@ def _commit(desk: Desk, command: c.Commit) -> None:
         if desk.snapshot.draft.empty:
             driving.commit_proposal(desk, branch_id)
         else:
-            driving.cancel(desk)
+            driving.take_over(desk, branch_id)
             driving.commit(desk, branch_id, driving.override_of(desk, command.why))
     elif desk.snapshot.draft.empty:
         moving.by_decision(desk, 1)
@@ -116,6 +116,8 @@ def _consent(desk: Desk, command: c.Consent) -> None:
     desk.change(consent_to="")
     if command.allow:
         driving.ask(desk, desk.snapshot.branch.branch_id)
+    else:
+        desk.leave(desk.snapshot.branch.branch_id, "Pictures stay on this machine")
 
 
 def _place(desk: Desk, command: c.Place) -> None:

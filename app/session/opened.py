@@ -11,6 +11,7 @@ from app.session.reasked import NOTHING, ByDecision
 from c2nav_engine.contract.prompt import Ranked
 from c2nav_engine.contract.question import Picture
 from c2nav_engine.navigator.requests import Request
+from c2nav_engine.rankers.tally import Telling
 from c2nav_engine.runner.exchange import Exchange, Override
 from c2nav_engine.runner.record import Footer, Header
 from c2nav_engine.runner.worlds import World
@@ -56,8 +57,11 @@ class Run(Protocol):
         """Answer the pending request, asking the ranker where it is a question."""
         ...
 
-    def propose(self) -> Ranked:
-        """What the ranker says to the pending question, without committing it."""
+    def propose(self, told: Telling | None = None) -> Ranked:
+        """What the ranker says to the pending question, without committing it.
+
+        `told` hears how many queries are answered, of how many, from any thread.
+        """
         ...
 
     def commit(self, override: Override | None = None) -> Exchange:

@@ -32,16 +32,20 @@ class Asking:
     """A question that is with the ranker.
 
     Attributes:
+        branch_id: Of which branch.
         decision: Which one.
         since_s: Wall clock when it went out.
-        queries: How many queries it is expected to take.
-        median_s: Median latency of a query so far; None before the first.
+        queries: How many queries it takes, as far as is known.
+        answered: How many of them are answered.
+        usual_s: Median wall time of a whole answer so far; None before the first.
     """
 
+    branch_id: str
     decision: int
     since_s: float
     queries: int
-    median_s: float | None
+    answered: int = 0
+    usual_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,6 +211,7 @@ class Snapshot:
         stop: Index into the story's stops: where one stands.
         proposals: Branch → the ranker's record for its pending decision.
         asking: The question that is out, if any.
+        let_go: Branch → why nobody answers its pending question any longer, in words.
         draft: The person's ranking so far.
         why: What the person says about it.
         offer: A fork that waits for a yes.
@@ -239,6 +244,7 @@ class Snapshot:
     stop: int
     proposals: dict[str, Ranked] = field(default_factory=dict[str, Ranked])
     asking: Asking | None = None
+    let_go: dict[str, str] = field(default_factory=dict[str, str])
     draft: Draft = field(default_factory=Draft)
     why: str = ""
     offer: ForkOffer | None = None

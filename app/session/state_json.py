@@ -7,6 +7,7 @@ from typing import Any
 from app.session.branches import Origin, ended_words
 from app.session.cards import decision_json, lookback_json
 from app.session.decisions import Decision
+from app.session.driving import HUMAN
 from app.session.route_text import route_segments
 from app.session.snapshot import LAYERS_AT_FIRST, Judgement, Snapshot
 from app.session.timeline import Timelines
@@ -51,6 +52,7 @@ def state_json(snapshot: Snapshot, timelines: Timelines | None = None) -> Json:
             "tie_next": snapshot.draft.tie_next,
         },
         "asking": _asking(snapshot),
+        "let_go": _let_go(snapshot),
         "offer": _offer(snapshot),
         "playing": snapshot.playing,
         "view": {
@@ -140,12 +142,25 @@ def _asking(snapshot: Snapshot) -> Json | None:
     if asking is None:
         return None
     return {
+        "branch": asking.branch_id,
         "decision": asking.decision,
         "since_s": asking.since_s,
         "queries": asking.queries,
-        "median_s": asking.median_s,
+        "answered": asking.answered,
+        "usual_s": asking.usual_s,
         "ranker": snapshot.story.header.ranker,
     }
+
+
+def _let_go(snapshot: Snapshot) -> str:
+    """Why nobody answers the pending decision in view; "" where somebody does, or nobody should."""
+    decision, branch_id = snapshot.decision, snapshot.branch.branch_id
+    waits = decision is not None and decision.pending and snapshot.proposal is None
+    if not waits or snapshot.covered or snapshot.asking or snapshot.consent_to:
+        return ""
+    if snapshot.story.header.ranker == HUMAN:
+        return ""
+    return snapshot.let_go.get(branch_id, "Not asked yet")
 
 
 def _offer(snapshot: Snapshot) -> Json | None:

@@ -71,6 +71,7 @@ class Session:
         hands = Hands(
             self._background,
             clock,
+            post=self._inbox.put,
             after_page=partial(self._after, self.first_page.wait),
             after_scene=partial(self._after, self.first_page.wait_for_scene),
         )

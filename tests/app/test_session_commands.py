@@ -348,3 +348,48 @@ def test_a_ranker_that_breaks_unforeseen_can_be_asked_again():
         watched.until(proposed(0))
     finally:
         session.close()
+
+
+def test_a_question_that_was_let_go_says_so_until_it_is_asked_again():
+    gate = threading.Event()
+    session = Session(stage.opened_live(gate=gate))
+    watched = Watched(session)
+    try:
+        watched.until(lambda s: s.asking is not None)
+        assert state_json(session.snapshot)["let_go"] == ""
+        watched.do(c.Cancel())
+        assert state_json(watched.until(lambda s: s.asking is None))["let_go"] == "Cancelled"
+        watched.do(c.AskAgain())
+        assert state_json(watched.until(lambda s: s.asking is not None))["let_go"] == ""
+        watched.do(c.Cancel())
+        watched.until(lambda s: s.asking is None)
+        gate.set()  # A late answer counts while none was committed.
+        assert state_json(watched.until(proposed(0)))["let_go"] == ""
+    finally:
+        gate.set()
+        session.close()
+
+
+def test_how_far_a_question_is_comes_from_its_ranker():
+    gate = threading.Event()
+    opened, run = stage.opened_live(), stage.live_run(gate=gate)
+    begin = opened.open
+    session = Session(replace(opened, open=lambda choice: replace(begin(choice), run=run)))
+    watched = Watched(session)
+    try:
+        asking = watched.until(lambda s: s.asking is not None and run.told is not None).asking
+        assert asking is not None
+        assert (asking.answered, asking.usual_s) == (0, None)
+        assert run.told is not None
+        run.told(1, 3)
+        told = watched.until(lambda s: s.asking is not None and s.asking.answered == 1)
+        assert state_json(told)["asking"]["queries"] == 3
+        watched.do(c.Cancel())
+        watched.until(lambda s: s.asking is None)
+        watched.do(c.AskAgain())
+        # It is the same question that is still out.
+        again = watched.until(lambda s: s.asking is not None).asking
+        assert again == told.asking
+    finally:
+        gate.set()
+        session.close()

@@ -224,6 +224,7 @@ HARMLESS = {
     "version",
     "stop",
     "asking",
+    "let_go",
     "draft",
     "why",
     "offer",

@@ -35,6 +35,7 @@ from c2nav_engine.navigator.requests import (
     Stop,
     View,
 )
+from c2nav_engine.rankers.tally import Telling
 from c2nav_engine.runner.exchange import Exchange, Override, Truth
 from c2nav_engine.runner.record import EpisodeOutcome, Footer, Header
 from tests.helpers.stage_script import (
@@ -92,12 +93,14 @@ class PlayRun:
         self._steps = 0
         self._decisions = 0
         self._proposal: Ranked | None = None
+        self.told: Telling | None = None
         self.closed = False
         self.kept: dict[str, bytes] = {}
 
-    def propose(self) -> Ranked:
+    def propose(self, told: Telling | None = None) -> Ranked:
         assert isinstance(self.pending, Ask)
         request = self.pending
+        self.told = told
         if self._proposal is None:
             time.sleep(self.delay_s)
             if self.gate is not None:
