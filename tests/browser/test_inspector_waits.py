@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -42,7 +42,7 @@ class Waiting:
 
 
 @contextmanager
-def waiting(browser: Browser) -> Iterator[Waiting]:
+def waiting(browser: Browser) -> Generator[Waiting]:
     gate = threading.Event()
     opened, run = stage.opened_live(), stage.live_run(gate=gate)
     begin = opened.open
