@@ -92,6 +92,22 @@ def test_focus_stays_on_a_button_while_the_seconds_go_on(browser: Browser):
         page.seen.until("!s.asking", 5_000)
 
 
+def test_an_offer_keeps_its_buttons_while_a_question_is_out(browser: Browser):
+    with waiting(browser) as page:
+        fork = "document.querySelector('wait-card').shadowRoot.querySelector('button.go')"
+        page.seen.page.evaluate(
+            """() => {
+              const card = document.querySelector("wait-card");
+              const offer = { decision: 0, decisions: 2, queries: 3, seconds: 4, dollars: 0 };
+              card.state = { ...card.state, offer };
+              card.draw();
+            }"""
+        )
+        page.seen.page.evaluate(f"window.fork = {fork}")
+        page.seen.page.wait_for_timeout(700)
+        assert page.seen.page.evaluate(f"fork.textContent === 'Fork' && fork === {fork}")
+
+
 def test_the_strip_keeps_its_nodes_while_states_come(browser: Browser):
     with waiting(browser) as page:
         root = "document.querySelector('rank-strip').shadowRoot"
