@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import viser
 
 from app.inspector.scene import frames
@@ -13,9 +15,15 @@ from c2nav_engine.geometry import Point
 
 _WIDTH_PX = 5.0
 
+_SAME_M = 1e-3
+"""Ways nearer than this to each other are one line."""
+
 
 class Trajectory:
-    """Active leg blue, earlier legs slate, what comes later dashed grey; each leg's number."""
+    """Active leg blue, earlier legs slate, what comes later dashed grey; each leg's number.
+
+    The way of a fork's parent is dashed too, from where the fork leaves it.
+    """
 
     def __init__(self, scene: viser.SceneApi) -> None:
         """Draw below /way."""
@@ -75,7 +83,8 @@ class Trajectory:
         self, story: Story, parent: Story | None, step: int
     ) -> list[viser.SceneNodeHandle]:
         nodes: list[viser.SceneNodeHandle] = []
-        for name, rest, start in (("own", story, step), ("parent", parent, 0)):
+        left = 0 if parent is None else leaves_at(story, parent)
+        for name, rest, start in (("own", story, step), ("parent", parent, left)):
             if rest is None or rest.track.last_step <= start:
                 continue
             points = _points(rest, start, rest.track.last_step)
@@ -87,6 +96,17 @@ class Trajectory:
                     )
                 )
         return nodes
+
+
+def leaves_at(story: Story, parent: Story) -> int:
+    """The last step at which a fork still stands where its parent stood."""
+    shared = 0
+    ways = zip(story.track.footsteps, parent.track.footsteps, strict=False)
+    for step, (own, other) in enumerate(ways):
+        if math.dist(own.pose.position_m, other.pose.position_m) > _SAME_M:
+            break
+        shared = step
+    return shared
 
 
 def _points(story: Story, start: int, stop: int) -> list[Point]:
