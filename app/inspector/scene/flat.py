@@ -15,6 +15,11 @@ from app.inspector.scene.glb import LINEAR, Surface, pack
 from c2nav_engine.geometry import Point
 from c2nav_engine.world.scene import Material
 
+_BELOW_M = 200.0
+"""How far below a translucent sheet a vertex lies that no triangle uses. Browsers paint what shines
+through by the distance of its bounds' middle, the farthest first. The cut face of the walls lies
+above the sheets; where it comes first, its clear parts keep what is below from being painted."""
+
 
 def add_flat(
     scene: viser.SceneApi,
@@ -36,6 +41,9 @@ def add_flat(
         position_m: Where the mesh's origin stands.
     """
     vertices_m, triangles = mesh
+    if opacity < 1.0:
+        x, y, z = (vertices_m.min(axis=0) + vertices_m.max(axis=0)) / 2.0
+        vertices_m = np.concatenate([vertices_m, np.array([[x, y - _BELOW_M, z]], np.float32)])
     red, green, blue = (float(LINEAR[channel]) for channel in colour)
     material = Material(name, (red, green, blue, 1.0))
     surface = Surface(vertices_m, triangles, material, opacity=opacity)
