@@ -13,7 +13,7 @@ from app.inspector.palette import ACTIONS
 from app.inspector.panels import branches, decision, export, ladder, review, run, sketch
 from app.session import commands as c
 from app.session.opened import Opening
-from app.session.snapshot import Snapshot
+from app.session.snapshot import Assessment, Snapshot
 from app.session.worker import Session
 from c2nav_engine.contract.question import Slot
 from tests.helpers import stage
@@ -99,6 +99,19 @@ def test_the_ladder_and_sketch_follow_where_one_stands():
     whole = session.snapshot
     last = replace(whole, stop=len(whole.story.stops) - 1)
     assert len(sketch.sketches_in_view(last)) > len(sketch.sketches_in_view(whole))
+
+
+def test_every_suspect_is_listed_and_counted():
+    snapshot = Session(stage.opened_recording()).snapshot
+    numbers = range(len(snapshot.story.decisions))
+    assert len(numbers) > 6
+    words = "controller: nothing good offered"
+    assessed = {number: Assessment(number, 1.0 + number, words) for number in numbers}
+    shown = run._block(replace(snapshot, assessed={snapshot.branch.branch_id: assessed}))
+    assert f"{len(numbers)} suspects, worst first" in shown
+    listed = [int(number) for number in re.findall(r">decision (\d+)<", shown)]
+    assert listed == sorted(numbers, reverse=True)
+    assert shown.count(f"</b><small>{words}</small></li>") == len(numbers)
 
 
 def test_a_transition_shows_its_disagreeing_orders():

@@ -74,10 +74,13 @@ export function about() {
   return [...branches(), ...suspects(branch), ...evidence(branch), ...sketch(branch), heading("This run"), facts(branch.facts), heading("Provenance"), provenance(branch)];
 }
 
+const LISTED = 6;
+
 /** Decisions worth a look, worst first; the agent never read this. */
 function suspects(branch) {
   if (!branch.suspects.length) return [];
-  const rows = branch.suspects.slice(0, 6).map(({ decision, words }) =>
+  const listed = branch.suspects.slice(0, LISTED);
+  const rows = listed.map(({ decision, words }) =>
     h(
       "tr",
       {},
@@ -86,7 +89,9 @@ function suspects(branch) {
       h("td", {}, words),
     ),
   );
-  return [heading("Suspects, worst first"), h("table", { class: "c2-table" }, h("tbody", {}, ...rows))];
+  const count = branch.suspects.length;
+  const said = count > LISTED ? `Suspects, the worst ${LISTED} of ${count}` : "Suspects, worst first";
+  return [heading(said), h("table", { class: "c2-table" }, h("tbody", {}, ...rows))];
 }
 
 function provenance(branch) {

@@ -42,7 +42,7 @@ def _block(snapshot: Snapshot) -> str:
     cost = cost_of(snapshot.story.decisions)
     return m.padded(
         _transport(snapshot),
-        m.heading("Suspects, worst first"),
+        m.heading(_suspects_head(len(snapshot.suspects))),
         _suspects(snapshot),
         Markup('<div class="c2-buttons c2-small">{}</div>').format(
             m.action("Was the goal in view?", c.Place(goal=True))
@@ -100,24 +100,25 @@ def _spent(snapshot: Snapshot) -> str:
     return ", ".join(words)
 
 
+def _suspects_head(count: int) -> str:
+    """A list that scrolls shows fewer than it holds, so it says how many."""
+    return f"{plural(count, 'suspect')}, worst first" if count else "Suspects, worst first"
+
+
 def _suspects(snapshot: Snapshot) -> Markup:
+    """All of them, the worst in view, each with what is said of it on a line of its own."""
     if not snapshot.suspects:
         return m.note(snapshot.no_suspects)
-    decisions = snapshot.story.decisions
-    return m.table(
-        ["", "", ""],
-        [
-            [
-                m.action(f"decision {s.decision}", c.Go(decision=s.decision)),
-                f"{SIGNS[decisions[s.decision].lane]} {LANES[decisions[s.decision].lane]}",
-                _regret(s),
-            ]
-            for s in snapshot.suspects[:6]
-        ],
+    lines = [_suspect(snapshot, suspect) for suspect in snapshot.suspects]
+    return Markup('<ol class="c2-suspects" tabindex="0">{}</ol>').format(m.join(lines))
+
+
+def _suspect(snapshot: Snapshot, suspect: Assessment) -> Markup:
+    decision = snapshot.story.decisions[suspect.decision]
+    regret_m = suspect.regret_m or 0.0
+    return Markup("<li>{}<span>{}</span><b>{}</b><small>{}</small></li>").format(
+        m.action(f"decision {suspect.decision}", c.Go(decision=suspect.decision)),
+        f"{SIGNS[decision.lane]} {LANES[decision.lane]}",
+        f"+{regret_m:.1f} m" if regret_m >= SUSPECT_M else "",
+        suspect.words,
     )
-
-
-def _regret(suspect: Assessment) -> str | Markup:
-    if suspect.regret_m is None or suspect.regret_m < SUSPECT_M:
-        return suspect.words
-    return Markup("+{:.1f} m<small>{}</small>").format(suspect.regret_m, suspect.words)
