@@ -132,7 +132,7 @@ class Shell:
         self._updates.append(view.build(gui, self._session.dispatch))
         gui.set_panel_label("Map")
         gui.main_panel.float(x=-12, y=-12)
-        gui.main_panel.set_width(220)
+        gui.main_panel.set_width(240)
         gui.main_panel.minimize()
         add_palette(gui, self._session.dispatch)
 

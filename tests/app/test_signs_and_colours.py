@@ -66,7 +66,7 @@ def test_the_three_colours_are_the_agreed_ones():
 
 
 @pytest.mark.parametrize("dark", [False, True])
-@pytest.mark.parametrize("text", ["ink", "quiet", "blue-text", "green-text"])
+@pytest.mark.parametrize("text", ["ink", "quiet", "blue-text", "green-text", "vermilion-text"])
 @pytest.mark.parametrize("ground", ["card", "chip", "code", "active"])
 def test_text_is_legible(dark: bool, text: str, ground: str):
     found = tokens(dark)
