@@ -17,8 +17,8 @@ document.title = "C²Nav inspector";
 const top = h("div", { id: "c2-top" });
 const banner = h("div", { id: "c2-banner", role: "status" });
 const tabs = h("div", { id: "c2-tabs" });
-const ego = h("div", { hidden: true }, "rendered here, not what the robot saw");
-const bare = h("div", { hidden: true }, "map without the scene");
+const ego = h("div", { id: "c2-ego", hidden: true });
+const bare = h("div", { hidden: true }, h("span", { class: "c2-long" }, "map without the scene"), h("span", { class: "c2-short" }, "no scene"));
 const seen = h("div", { hidden: true });
 const menu = h("nav", { id: "c2-menu", "aria-label": "pages", hidden: true });
 const pills = h("div", { id: "c2-pills" }, banner, bare, seen, ego, tabs, menu);
@@ -68,12 +68,11 @@ subscribe((now, changed) => {
     banner.textContent = now.branch.label;
     banner.classList.toggle("differs", now.branch.differs);
   }
-  if (changed.has("no_scene")) {
-    bare.hidden = !now.no_scene;
-    bare.title = now.no_scene;
-  }
-  if (changed.has("view")) {
+  if (changed.has("no_scene") || changed.has("view")) {
     ego.hidden = now.view.camera !== "ego";
+    ego.textContent = now.no_scene ? "no mesh to look at; the cards show what the robot saw" : "rendered here, not what the robot saw";
+    bare.hidden = !now.no_scene || !ego.hidden;
+    bare.title = ego.title = now.no_scene;
     showMenu();
   }
   if (changed.has("place") || changed.has("glimpse")) {

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.inspector.scene.cameras import Cameras, covered_share, framed_points, in_view, overview
-from app.session.snapshot import Snapshot
+from app.session.snapshot import ForkOffer, PlaceAnswer, Snapshot
 from app.session.worker import Session
 from c2nav_engine.geometry import Point
 from tests.helpers import stage
@@ -77,6 +77,14 @@ def test_a_longer_instruction_covers_more_but_never_most_of_the_map(width_px: in
     shares = [covered(words) for words in (1, 20, 60, 2000)]
     assert shares == sorted(shares)
     assert 0.0 < shares[0] < shares[2] <= shares[-1] == 0.4
+
+
+def test_cards_below_the_instruction_are_covered_map_too():
+    bare = Session(stage.opened_live()).snapshot
+    offered = replace(bare, offer=ForkOffer(3, 17, 51, 35.0, 0.4))
+    both = replace(offered, place=PlaceAnswer((0.0, 0.0, 0.0), (), {}, "by the scene"))
+    shares = [covered_share(snapshot, 1100, 970) for snapshot in (bare, offered, both)]
+    assert shares[0] < shares[1] < shares[2] < 0.4
 
 
 @dataclass

@@ -35,6 +35,9 @@ _COVERED_MOST = 0.4
 _ROW_PX, _LETTER_PX, _BELOW_PX = 26, 10, 94
 """Of the strip: height of a row, width of a letter at most, its margins with the line below it."""
 
+_CARD_LETTERS, _CARD_PX = 80, 16
+"""Of a card below it: letters and buttons in letters, its margins."""
+
 _NEAREST_M = 6.0
 
 _STILL_M = 0.01
@@ -136,10 +139,16 @@ def framed_points(snapshot: Snapshot) -> list[Point]:
 
 
 def covered_share(snapshot: Snapshot, width_px: int, height_px: int) -> float:
-    """About which share of the map's height the instruction and the line below it cover."""
+    """About which share of the map's height the instruction and what stands below it cover."""
     letters = len(snapshot.story.header.episode.instruction)
-    rows = math.ceil(letters * _LETTER_PX / width_px)
-    return min(_COVERED_MOST, (rows * _ROW_PX + _BELOW_PX) / height_px)
+    covered_px = _rows(letters, width_px) * _ROW_PX + _BELOW_PX
+    cards = (snapshot.offer is not None) + (snapshot.place is not None)
+    covered_px += cards * (_rows(_CARD_LETTERS, width_px) * _ROW_PX + _CARD_PX)
+    return min(_COVERED_MOST, covered_px / height_px)
+
+
+def _rows(letters: int, width_px: int) -> int:
+    return math.ceil(letters * _LETTER_PX / width_px)
 
 
 def overview(
