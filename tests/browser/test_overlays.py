@@ -68,3 +68,19 @@ def test_without_the_scene_one_line_says_so_and_ego_promises_no_picture(browser:
         assert "no mesh to look at; the cards show what the robot saw" in said
         assert "rendered here" not in said
         assert "no scene" not in said
+
+
+def test_furniture_never_hides_the_body(browser: Browser):
+    with inspector(stage.opened_recording()) as (url, _), visit(browser, url, size=SMALL) as seen:
+        seen.until_node("/body")
+        seen.page.wait_for_function(
+            """() => {
+              let over = false;
+              window.__viserMutable?.nodeRefFromName['/body']?.traverse((part) => {
+                if (part.isMesh) over = !part.material.depthTest && part.renderOrder > 0;
+              });
+              return over;
+            }""",
+            timeout=15_000,
+        )
+        assert seen.errors == []
