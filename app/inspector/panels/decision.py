@@ -171,5 +171,3 @@ def _known(decision: Decision) -> Markup:
         *facts.notes.items(),
     ]
     return m.join([m.heading("Controller"), m.facts(rows)])
-
-
