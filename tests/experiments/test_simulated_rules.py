@@ -197,9 +197,9 @@ def test_options_come_as_words_and_go_to_the_record() -> None:
     [
         ({"d_prime": "high"}, "expected a value for d_prime"),
         ({"d_prime": "-1"}, "expected d_prime of the simulated observer as 0 or more, came -1.0"),
-        ({"sigma_c": "inf"}, "expected sigma_c"),
+        ({"sigma_c": "inf"}, "expected a value for sigma_c"),
         ({"lapse": "1.5"}, "within 0 … 1, came 1.5"),
-        ({"invalid_rate": "nan"}, "expected invalid_rate"),
+        ({"invalid_rate": "nan"}, "expected a value for invalid_rate"),
         ({"dprime": "1"}, "has no option dprime"),
     ],
 )

@@ -96,10 +96,16 @@ def shots(seen: Visit) -> dict[str, Arrange]:
     looks = [m["decision"] for m in marks if "look-back" in m["words"]]
     return {
         "decision": then(
-            go(election), send("'layer', {name: 'goal', on: true}"), tab("Decision", "Run")
+            key("Escape"),  # The sheet of the walk before is in the way of keys.
+            go(election),
+            send("'layer', {name: 'goal', on: true}"),
+            tab("Decision", "Run"),
         ),
         "ranking": then(key("2"), until("s.decision.source === 'draft'"), tab("Export")),
-        "fork-offer": then(key("Enter"), until("s.offer"), tab("Branches")),
+        # Without the scene it is refused instead.
+        "fork-offer": then(
+            key("Enter"), until("s.offer || s.no_scene && s.notice.fault"), tab("Branches")
+        ),
         "transition-sketch": then(
             key("Escape"), go(first(seen, 1, after=half // 3)), tab("Sketch", "Review")
         ),
